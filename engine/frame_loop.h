@@ -1,0 +1,70 @@
+#pragma once
+// Scene and settings in, frames out: timeline → rasterizer → TAA (or ssaa) → 8-bit image.
+
+#include <functional>
+#include <memory>
+
+#include "engine/scene.h"
+#include "engine/timeline.h"
+#include "postfx/encode.h"
+#include "postfx/taa.h"
+#include "rasterizer/rasterizer.h"
+
+namespace still {
+
+enum class AntiAliasing { none, taa, ssaa };
+
+struct FrameSettings {
+    int width = 1280, height = 720;
+    AntiAliasing anti_aliasing = AntiAliasing::taa;
+    int ssaa_samples = 64;  ///< 1 … 65536, used with AntiAliasing::ssaa
+    ToneMap tone_map = ToneMap::none;
+    SimdTarget simd = bestSimdTarget();
+    Shading shading = Shading::deferred;
+    PlaneSet planes;  ///< in addition to what the settings need
+    CameraChoice camera;
+    /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
+    /// (a finished picture instead of a raw first frame).
+    int subframes = 1;
+    /// Returns milliseconds; when empty no times are taken.
+    std::function<double()> clock_ms;
+};
+
+/// Milliseconds spent on one frame (summed over sub-frames and ssaa samples).
+struct StageTimes {
+    double transform_bin_ms = 0, raster_ms = 0, taa_ms = 0, output_ms = 0;
+};
+
+/// What render() hands out; views are valid until the next render().
+struct FrameResult {
+    ImageView<const Rgb8> output;
+    ColourPlanes linear;                ///< the same before encoding, fx12
+    const GBuffer* gbuffer = nullptr;   ///< of the last sub-frame
+    ImageView<const uint8_t> sample_count;  ///< empty without TAA
+    StageTimes times;
+    bool converged = false;  ///< TAA only: further frames of a still scene will not differ
+};
+
+class FrameLoop {
+  public:
+    /// `scene` and `workers` must outlive the loop.
+    FrameLoop(const Scene& scene, const FrameSettings& settings, Workers& workers);
+    ~FrameLoop();
+    FrameLoop(const FrameLoop&) = delete;
+    FrameLoop& operator=(const FrameLoop&) = delete;
+
+    /// Renders frame `frame`. Frames that it depends on (back to the last cut) are replayed unseen
+    /// when they were not rendered just before, so any order gives the same bytes.
+    FrameResult render(int frame);
+
+    /// Changes the target size from the next frame on; history starts anew.
+    void resize(int width, int height);
+
+    const RasterCounters& counters() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace still

@@ -1,0 +1,26 @@
+#pragma once
+// 64-bit content hashes (XXH3, libxxhash) of images and planes: size and pixels, not the padding.
+
+#include <cstdint>
+#include <string>
+
+#include "postfx/taa.h"
+#include "rasterizer/gbuffer.h"
+
+namespace still {
+
+/// Hash of every pixel, row by row, and of the size.
+template <class T>
+uint64_t hashPlane(ImageView<const T> plane);
+
+struct FrameHashes {
+    uint64_t output = 0, color = 0, depth = 0, normal = 0, motion = 0, id = 0;
+};
+
+/// Planes that do not exist hash to 0. `color` covers red, green and blue of the G-buffer.
+FrameHashes hashFrame(ImageView<const Rgb8> output, const GBuffer& gbuffer);
+
+/// 16 hexadecimal digits.
+std::string hex(uint64_t hash);
+
+}  // namespace still

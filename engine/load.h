@@ -1,0 +1,24 @@
+#pragma once
+// Files in, Scene out. Everything here returns an Error with one clear line instead of crashing.
+
+#include <filesystem>
+
+#include "engine/result.h"
+#include "engine/scene.h"
+
+namespace still {
+
+/// Loads NAME.obj (framed by its projected bounds, default light) or NAME.json (scene file).
+/// Colour textures are decoded from sRGB and get mip chains built in linear light.
+Result<Scene> loadScene(const std::filesystem::path& file);
+
+/// Loads {"width":W,"height":H,"frames":[{"view":[16],"proj":[16],"jitter":[x,y]}…]}: column-major,
+/// OpenGL clip space, proj unjittered, jitter in pixels = sample offset from the pixel centre, x to
+/// the right and y down, in [−0.5, 0.5), rounded to 1/256.
+Result<CameraFile> loadCameraFile(const std::filesystem::path& file);
+
+/// Sets eye, target, near and far so that the projected bounds of frame 0 fill the picture with a
+/// 5 % margin, seen from `direction` (from the scene towards the eye). Aspect = width / height.
+void frameScene(Scene& scene, glm::dvec3 direction, double aspect);
+
+}  // namespace still

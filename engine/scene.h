@@ -1,0 +1,107 @@
+#pragma once
+// A scene as it stands in memory: assets, objects, tracks over time. Built by engine/load.h from
+// files or by demos/scenes from code. The scene file format is documented in engine/README.md.
+
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rasterizer/draw_list.h"
+
+namespace still {
+
+/// A value over time, in frames. Empty track: the default. Before the first key and after the last
+/// one the value is held; between keys it is interpolated linearly in double.
+template <class T>
+struct Track {
+    struct Key {
+        double frame;
+        T value;
+    };
+    std::vector<Key> keys;  ///< strictly increasing frames
+    bool animated() const { return keys.size() > 1; }
+};
+
+/// Rotation keys: degrees about `axis` (unit). Keys may exceed 360.
+struct ObjectTracks {
+    Track<glm::dvec3> translation;
+    Track<double> rotation_deg;
+    glm::dvec3 rotation_axis{0, 1, 0};
+    Track<glm::dvec3> scale;  ///< non-zero components
+};
+
+/// world = T(frame) · R(frame) · S(frame) · base
+struct SceneObject {
+    std::string name;
+    uint32_t mesh = 0;
+    glm::dmat4 base{1.0};
+    ObjectTracks tracks;
+};
+
+/// One camera pose.
+struct CameraPose {
+    glm::dvec3 eye{0, 0, 5};
+    glm::dvec3 target{0, 0, 0};
+    glm::dvec3 up{0, 1, 0};
+    double fov_y_deg = 45;  ///< vertical
+};
+
+struct NamedView {
+    std::string name;
+    CameraPose pose;
+};
+
+struct Camera {
+    Track<glm::dvec3> eye, target, up;
+    Track<double> fov_y_deg;
+    double near = 0.1, far = 1000.0;
+};
+
+/// One frame of a camera file: explicit matrices from another renderer, OpenGL conventions.
+struct CameraFileFrame {
+    glm::dmat4 view{1.0}, projection{1.0};
+    std::optional<std::array<int, 2>> jitter_fx8;  ///< sample offset from the pixel centre, y down
+};
+struct CameraFile {
+    int width = 0, height = 0;
+    std::vector<CameraFileFrame> frames;
+};
+
+struct SceneLights {
+    std::array<float, 3> ambient{0.25f, 0.25f, 0.25f};
+    Track<double> ambient_intensity;  ///< multiplies; empty = 1
+    DirectionalLight sun;
+    Track<double> sun_intensity;
+    std::vector<PointLight> points;
+    std::vector<Track<double>> point_intensity;  ///< one per point light, or empty
+};
+
+struct Bounds {
+    glm::dvec3 min{0}, max{0};
+    bool valid = false;
+};
+
+struct Scene {
+    std::string name;
+    std::vector<Mesh> meshes;
+    std::vector<std::string> mesh_names;
+    std::vector<Material> materials;
+    std::vector<Texture> textures;
+    std::vector<AlphaTexture> alpha_textures;
+    std::vector<SceneObject> objects;
+    Camera camera;
+    std::vector<NamedView> views;
+    SceneLights lights;
+    std::array<float, 3> background{0.0f, 0.0f, 0.0f};  ///< linear light
+    std::vector<int> cuts;                              ///< frames whose camera has no past, sorted
+    std::vector<std::string> warnings;                  ///< one line each, for standard error
+
+    uint64_t triangleCount() const;  ///< over all objects
+    Bounds bounds(double frame) const;  ///< world box of all vertices
+};
+
+}  // namespace still

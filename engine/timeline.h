@@ -1,0 +1,47 @@
+#pragma once
+// Frame N of a scene: what stands where, and what changed since frame N−1. A pure function.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "engine/scene.h"
+#include "rasterizer/draw_list.h"
+
+namespace still {
+
+/// The camera in explicit form.
+struct CameraState {
+    glm::dmat4 view_projection{1.0};  ///< unjittered, OpenGL clip space
+    glm::dvec3 eye{0};
+};
+
+struct FrameState {
+    std::vector<Instance> instances;  ///< with surfaces numbered, moved flags set
+    Lighting lighting;
+    CameraState camera, camera_before;
+    bool cut = false;              ///< first frame, or a cut: no past
+    bool lighting_changed = false;
+    std::optional<std::array<int, 2>> jitter_fx8;  ///< given by a camera file
+};
+
+/// How the camera is chosen; at most one of these is used.
+struct CameraChoice {
+    const CameraFile* file = nullptr;  ///< explicit matrices; frame N uses entry min(N, last)
+    int view = -1;                     ///< index into Scene::views, a fixed pose
+    double orbit_deg = 0;              ///< circles the target by this angle over `orbit_frames`
+    int orbit_frames = 1;
+};
+
+/// State of frame `frame` ≥ 0. `width` and `height` give the aspect.
+FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,
+                        int height);
+
+/// True when no frame differs from frame 0 (no animation, orbit, cut or moving camera file).
+bool isStill(const Scene& scene, const CameraChoice& choice);
+
+/// Surfaces of the scene: the objects' mesh parts in order. Loaders refuse more than kMaxSurfaces,
+/// and more than 65535 objects.
+uint32_t surfaceCount(const Scene& scene);
+
+}  // namespace still

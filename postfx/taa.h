@@ -1,0 +1,57 @@
+#pragma once
+// Temporal anti-aliasing: one jittered sample per pixel and the history in, an image out.
+// Integer from end to end. Flow, formats and reasons: postfx/README.md.
+
+#include <cstdint>
+#include <memory>
+
+#include "rasterizer/gbuffer.h"
+#include "rasterizer/simd.h"
+#include "rasterizer/workers.h"
+
+namespace still {
+
+struct TaaSettings {
+    SimdTarget simd = bestSimdTarget();
+    /// Samples after which a still pixel is finished (the length of the jitter sequence): 1 … 255.
+    int sample_cap = 64;
+};
+
+/// What the frame loop knows and the pixels do not show.
+struct TaaFrame {
+    bool reset = false;  ///< first frame, camera cut: there is no history
+    /// Light, material or texture changed since the last frame: history colours are only evidence.
+    bool shading_changed = false;
+};
+
+/// Linear light, fx12, planar.
+struct ColourPlanes {
+    ImageView<const uint16_t> red, green, blue;
+};
+
+/// Owns the history. resolve() must be called once per frame, in order.
+class Taa {
+  public:
+    Taa();
+    ~Taa();
+    Taa(const Taa&) = delete;
+    Taa& operator=(const Taa&) = delete;
+
+    /// Accumulates the G-buffer's colours. Needs its motion plane (planes.motion), and its normal
+    /// plane when present takes part in validation. A changed size resets by itself.
+    void resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings,
+                 Workers& workers);
+
+    /// The resolved image; valid until the next resolve().
+    ColourPlanes colour() const;
+    /// Number of samples in each pixel, 1 … sample_cap; valid until the next resolve().
+    ImageView<const uint8_t> sampleCount() const;
+    /// True when every pixel has sample_cap samples and the last frame changed nothing.
+    bool converged() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace still

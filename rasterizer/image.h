@@ -1,0 +1,90 @@
+#pragma once
+// Pixel planes: one owning type and one view. Everything that touches pixels takes views.
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace still {
+
+/// A window onto a plane of pixels it does not own. Row 0 is the top row, x grows to the right.
+/// `stride` counts elements, not bytes. `const` in T shows the direction of data.
+template <class T>
+struct ImageView {
+    T* data = nullptr;
+    int width = 0;
+    int height = 0;
+    ptrdiff_t stride = 0;
+
+    T* row(int y) const { return data + ptrdiff_t{y} * stride; }
+    T& at(int x, int y) const {
+        assert(x >= 0 && x < width && y >= 0 && y < height);
+        return row(y)[x];
+    }
+    bool empty() const { return width == 0 || height == 0; }
+    operator ImageView<const T>() const { return {data, width, height, stride}; }
+};
+
+/// Rows are padded to a multiple of this many elements, so a kernel may read and write whole
+/// vectors, and whole tiles, past the right edge. What stands in the padding is unspecified.
+constexpr int kRowPadding = 64;
+
+/// Owns one plane. Elements before the first row and after the last one (kRowPadding each) may be
+/// read, so that a 3×3 window may be loaded without a test and masked afterwards.
+template <class T>
+class Image {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    Image() = default;
+    Image(int width, int height) { resize(width, height); }
+
+    /// Sets the size; the contents become zero when the size changes and stay when it does not.
+    void resize(int width, int height) {
+        assert(width >= 0 && height >= 0);
+        if (width == width_ && height == height_) {
+            return;
+        }
+        stride_ = (ptrdiff_t{width} + kRowPadding - 1) / kRowPadding * kRowPadding;
+        const size_t count = size_t(stride_) * size_t(height) + 2 * kRowPadding;
+        memory_.reset(static_cast<T*>(::operator new(count * sizeof(T), kAlignment)));
+        std::memset(static_cast<void*>(memory_.get()), 0, count * sizeof(T));
+        width_ = width;
+        height_ = height;
+    }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    bool empty() const { return width_ == 0 || height_ == 0; }
+    size_t bytes() const { return size_t(stride_) * size_t(height_) * sizeof(T); }
+    ImageView<T> view() { return {memory_.get() + kRowPadding, width_, height_, stride_}; }
+    ImageView<const T> view() const {
+        return {memory_.get() + kRowPadding, width_, height_, stride_};
+    }
+    T& at(int x, int y) { return view().at(x, y); }
+    const T& at(int x, int y) const { return view().at(x, y); }
+
+  private:
+    static constexpr std::align_val_t kAlignment{64};
+    struct Free {
+        void operator()(T* p) const { ::operator delete(static_cast<void*>(p), kAlignment); }
+    };
+    std::unique_ptr<T, Free> memory_;
+    int width_ = 0;
+    int height_ = 0;
+    ptrdiff_t stride_ = 0;
+};
+
+/// One output pixel, sRGB-encoded, 8 bits a channel, no padding between pixels.
+struct Rgb8 {
+    uint8_t r = 0, g = 0, b = 0;
+    friend bool operator==(const Rgb8&, const Rgb8&) = default;
+};
+static_assert(sizeof(Rgb8) == 3);
+
+}  // namespace still
