@@ -7,13 +7,12 @@
 
 namespace still {
 
-enum class SimdTarget { scalar, baseline, ssse3, sse4, avx2, avx512, neon, wasm };
+enum class SimdTarget { scalar, ssse3, sse4, avx2, avx512, neon, wasm };
 
 /// The names people type and read: "scalar", "ssse3", …
 std::string_view name(SimdTarget target);
 
 /// Targets that are compiled in and that this CPU runs, worst first; scalar is always there.
-/// `baseline` is Highway's portable fallback and is listed only where nothing better is static.
 std::vector<SimdTarget> availableSimdTargets();
 
 /// The last one of availableSimdTargets().

@@ -1,0 +1,42 @@
+#include "rasterizer/simd.h"
+
+#if STILL_SIMD
+#include <hwy/highway.h>
+
+#include "rasterizer/internal/dispatch.h"
+#endif
+
+namespace still {
+
+std::string_view name(SimdTarget target) {
+    switch (target) {
+        case SimdTarget::scalar: return "scalar";
+        case SimdTarget::ssse3: return "ssse3";
+        case SimdTarget::sse4: return "sse4";
+        case SimdTarget::avx2: return "avx2";
+        case SimdTarget::avx512: return "avx512";
+        case SimdTarget::neon: return "neon";
+        case SimdTarget::wasm: return "wasm";
+    }
+    return "unknown";
+}
+
+std::vector<SimdTarget> availableSimdTargets() {
+    std::vector<SimdTarget> targets{SimdTarget::scalar};
+#if STILL_SIMD
+    const int64_t usable = HWY_TARGETS & hwy::SupportedTargets();
+    for (SimdTarget target : {SimdTarget::ssse3, SimdTarget::sse4, SimdTarget::avx2,
+                              SimdTarget::avx512, SimdTarget::neon, SimdTarget::wasm}) {
+        if ((usable & internal::highwayBit(target)) != 0) {
+            targets.push_back(target);
+        }
+    }
+#endif
+    return targets;
+}
+
+SimdTarget bestSimdTarget() {
+    return availableSimdTargets().back();
+}
+
+}  // namespace still
