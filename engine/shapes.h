@@ -21,7 +21,8 @@ Mesh cylinder(int segments);
 /// Torus around the y axis, radii 1 and `tube`.
 Mesh torus(float tube, int segments, int sides);
 
-/// The shape a scene file names: "box", "plane", "sphere", "cylinder", "torus" in unit size.
+/// The shape a scene file names: "box", "plane", "sphere", "cylinder", "torus"; box, plane, sphere
+/// and cylinder reach from −1 to 1, the torus has radii 1 and 0.35.
 Result<Mesh> named(const std::string& name);
 std::vector<std::string> names();
 
