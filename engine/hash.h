@@ -9,7 +9,8 @@
 
 namespace still {
 
-/// Hash of every pixel, row by row, and of the size.
+/// Hash of every pixel, row by row, and of the size. T is uint8_t, uint16_t, uint32_t, Motion or
+/// Rgb8.
 template <class T>
 uint64_t hashPlane(ImageView<const T> plane);
 
@@ -17,7 +18,8 @@ struct FrameHashes {
     uint64_t output = 0, color = 0, depth = 0, normal = 0, motion = 0, id = 0;
 };
 
-/// Planes that do not exist hash to 0. `color` covers red, green and blue of the G-buffer.
+/// Planes that do not exist hash to 0. `color` covers red, green and blue of the G-buffer, `motion`
+/// the motion and the previous depth.
 FrameHashes hashFrame(ImageView<const Rgb8> output, const GBuffer& gbuffer);
 
 /// 16 hexadecimal digits.

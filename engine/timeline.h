@@ -25,7 +25,8 @@ struct FrameState {
     std::optional<std::array<int, 2>> jitter_fx8;  ///< given by a camera file
 };
 
-/// How the camera is chosen; at most one of these is used.
+/// How the camera is chosen: a file excludes the others; without a view the scene's camera is used,
+/// and an orbit turns whichever of the two it is.
 struct CameraChoice {
     const CameraFile* file = nullptr;  ///< explicit matrices; frame N uses entry min(N, last)
     int view = -1;                     ///< index into Scene::views, a fixed pose
@@ -36,6 +37,9 @@ struct CameraChoice {
 /// State of frame `frame` ≥ 0. `width` and `height` give the aspect.
 FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,
                         int height);
+
+/// The last frame ≤ `frame` that has no past: 0 or one of the scene's cuts.
+int lastCut(const Scene& scene, int frame);
 
 /// True when no frame differs from frame 0 (no animation, orbit, cut or moving camera file).
 bool isStill(const Scene& scene, const CameraChoice& choice);

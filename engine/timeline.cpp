@@ -1,0 +1,205 @@
+// Everything here is a pure function of the scene and the frame number, in double with the
+// operations in a written order; only finished transforms are rounded to float.
+
+#include "engine/timeline.h"
+
+#include <algorithm>
+#include <cassert>
+#include <glm/geometric.hpp>
+
+#include "engine/det_math.h"
+#include "engine/internal/tracks.h"
+
+namespace still {
+namespace {
+
+/// View matrix from the pose; a degenerate pose falls back to looking along −z, or to another up.
+glm::dmat4 lookAt(const CameraPose& pose) {
+    glm::dvec3 forward = pose.target - pose.eye;
+    forward = lengthOf(forward) > 0 ? unit(forward) : glm::dvec3(0, 0, -1);
+    glm::dvec3 side = glm::cross(forward, pose.up);
+    if (!(lengthOf(side) > 1e-9 * lengthOf(pose.up))) {
+        const bool along_z = forward.z > 0.9 || forward.z < -0.9;
+        side = glm::cross(forward, along_z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
+    }
+    side = unit(side);
+    const glm::dvec3 up = glm::cross(side, forward);
+    return {glm::dvec4(side.x, up.x, -forward.x, 0), glm::dvec4(side.y, up.y, -forward.y, 0),
+            glm::dvec4(side.z, up.z, -forward.z, 0),
+            glm::dvec4(-glm::dot(side, pose.eye), -glm::dot(up, pose.eye),
+                       glm::dot(forward, pose.eye), 1)};
+}
+
+/// OpenGL: z = −near maps to −w, z = −far to w.
+glm::dmat4 perspective(double fov_y_deg, double aspect, double near, double far) {
+    const double zoom = 1 / det::tanDegrees(fov_y_deg / 2);
+    glm::dmat4 projection(0.0);
+    projection[0][0] = zoom / aspect;
+    projection[1][1] = zoom;
+    projection[2][2] = (far + near) / (near - far);
+    projection[2][3] = -1;
+    projection[3][2] = 2 * far * near / (near - far);
+    return projection;
+}
+
+/// Where an affine view matrix maps to the origin (Cramer's rule).
+glm::dvec3 eyeOf(const glm::dmat4& view) {
+    const glm::dvec3 x(view[0]), y(view[1]), z(view[2]), moved(view[3]);
+    const double volume = glm::dot(x, glm::cross(y, z));
+    if (volume == 0) {
+        return glm::dvec3(0);
+    }
+    return {-glm::dot(moved, glm::cross(y, z)) / volume,
+            -glm::dot(moved, glm::cross(z, x)) / volume,
+            -glm::dot(moved, glm::cross(x, y)) / volume};
+}
+
+const CameraFileFrame& fileFrame(const CameraFile& file, int frame) {
+    assert(!file.frames.empty());
+    return file.frames[std::min(size_t(frame), file.frames.size() - 1)];
+}
+
+CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
+    CameraPose pose;
+    if (choice.view >= 0) {
+        assert(size_t(choice.view) < scene.views.size());
+        pose = scene.views[size_t(choice.view)].pose;
+    } else {
+        const Camera& camera = scene.camera;
+        pose.eye = valueAt(camera.eye, frame, pose.eye);
+        pose.target = valueAt(camera.target, frame, pose.target);
+        pose.up = valueAt(camera.up, frame, pose.up);
+        pose.fov_y_deg = valueAt(camera.fov_y_deg, frame, pose.fov_y_deg);
+    }
+    if (choice.orbit_deg != 0) {
+        const double turns = choice.orbit_deg * frame / (360.0 * choice.orbit_frames);
+        pose.eye = pose.target + rotationAbout(unit(pose.up), turns) * (pose.eye - pose.target);
+    }
+    return pose;
+}
+
+CameraState cameraAt(const Scene& scene, const CameraChoice& choice, int frame, double aspect) {
+    if (choice.file != nullptr) {
+        const CameraFileFrame& given = fileFrame(*choice.file, frame);
+        return {given.projection * given.view, eyeOf(given.view)};
+    }
+    const CameraPose pose = poseAt(scene, choice, frame);
+    const glm::dmat4 projection =
+        perspective(pose.fov_y_deg, aspect, scene.camera.near, scene.camera.far);
+    return {projection * lookAt(pose), pose.eye};
+}
+
+std::array<float, 3> scaled(const std::array<float, 3>& colour, const Track<double>& intensity,
+                            int frame) {
+    const double factor = valueAt(intensity, frame, 1.0);
+    return {float(colour[0] * factor), float(colour[1] * factor), float(colour[2] * factor)};
+}
+
+Lighting lightingAt(const SceneLights& lights, int frame) {
+    Lighting lighting;
+    lighting.ambient = scaled(lights.ambient, lights.ambient_intensity, frame);
+    lighting.sun = {lights.sun.direction, scaled(lights.sun.colour, lights.sun_intensity, frame)};
+    lighting.points = lights.points;
+    for (size_t i = 0; i < lights.point_intensity.size(); ++i) {
+        lighting.points[i].colour =
+            scaled(lights.points[i].colour, lights.point_intensity[i], frame);
+    }
+    return lighting;
+}
+
+bool lightingVaries(const SceneLights& lights) {
+    return varies(lights.ambient_intensity) || varies(lights.sun_intensity) ||
+           std::any_of(lights.point_intensity.begin(), lights.point_intensity.end(),
+                       [](const Track<double>& track) { return varies(track); });
+}
+
+bool sameLight(const Lighting& a, const Lighting& b) {
+    const auto same_point = [](const PointLight& p, const PointLight& q) {
+        return p.position == q.position && p.colour == q.colour;
+    };
+    return a.ambient == b.ambient && a.sun.direction == b.sun.direction &&
+           a.sun.colour == b.sun.colour &&
+           std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                      same_point);
+}
+
+std::vector<Instance> instancesAt(const Scene& scene, int frame, bool cut) {
+    std::vector<Instance> instances;
+    instances.reserve(scene.objects.size());
+    uint32_t surface = 1;
+    for (const SceneObject& object : scene.objects) {
+        Instance instance;
+        instance.mesh = object.mesh;
+        instance.object = uint16_t(instances.size() + 1);
+        instance.first_surface = uint16_t(surface);
+        instance.transform = toAffine(worldTransform(object, frame));
+        instance.transform_before = cut || !varies(object.tracks)
+                                        ? instance.transform
+                                        : toAffine(worldTransform(object, frame - 1));
+        instance.identity = instance.transform == kIdentity;
+        instance.moved = instance.transform != instance.transform_before;
+        surface += uint32_t(scene.meshes[object.mesh].parts.size());
+        instances.push_back(instance);
+    }
+    assert(surface - 1 <= kMaxSurfaces);
+    return instances;
+}
+
+bool cameraVaries(const Scene& scene, const CameraChoice& choice) {
+    if (choice.file != nullptr) {
+        const auto& frames = choice.file->frames;
+        return std::any_of(frames.begin(), frames.end(), [&](const CameraFileFrame& frame) {
+            return frame.view != frames[0].view || frame.projection != frames[0].projection ||
+                   frame.jitter_fx8 != frames[0].jitter_fx8;
+        });
+    }
+    const Camera& camera = scene.camera;
+    const bool keyed = choice.view < 0 && (varies(camera.eye) || varies(camera.target) ||
+                                           varies(camera.up) || varies(camera.fov_y_deg));
+    return keyed || choice.orbit_deg != 0;
+}
+
+}  // namespace
+
+int lastCut(const Scene& scene, int frame) {
+    const auto after = std::upper_bound(scene.cuts.begin(), scene.cuts.end(), frame);
+    return after == scene.cuts.begin() ? 0 : std::max(0, *(after - 1));
+}
+
+FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,
+                        int height) {
+    assert(frame >= 0 && width > 0 && height > 0);
+    const double aspect = double(width) / height;
+    FrameState state;
+    state.cut = lastCut(scene, frame) == frame;
+    state.instances = instancesAt(scene, frame, state.cut);
+    state.lighting = lightingAt(scene.lights, frame);
+    state.camera = cameraAt(scene, choice, frame, aspect);
+    state.camera_before = state.cut ? state.camera : cameraAt(scene, choice, frame - 1, aspect);
+    state.lighting_changed =
+        !state.cut && !sameLight(state.lighting, lightingAt(scene.lights, frame - 1));
+    if (choice.file != nullptr) {
+        state.jitter_fx8 = fileFrame(*choice.file, frame).jitter_fx8;
+    }
+    return state;
+}
+
+bool isStill(const Scene& scene, const CameraChoice& choice) {
+    const bool has_cuts =
+        std::any_of(scene.cuts.begin(), scene.cuts.end(), [](int cut) { return cut > 0; });
+    const bool objects_move =
+        std::any_of(scene.objects.begin(), scene.objects.end(),
+                    [](const SceneObject& object) { return varies(object.tracks); });
+    return !has_cuts && !objects_move && !lightingVaries(scene.lights) &&
+           !cameraVaries(scene, choice);
+}
+
+uint32_t surfaceCount(const Scene& scene) {
+    uint32_t count = 0;
+    for (const SceneObject& object : scene.objects) {
+        count += uint32_t(scene.meshes[object.mesh].parts.size());
+    }
+    return count;
+}
+
+}  // namespace still
