@@ -1,0 +1,54 @@
+#include "tests/support/plane_compare.h"
+
+namespace still::test {
+namespace {
+
+std::string text(uint32_t v) { return std::to_string(v); }
+std::string text(Motion v) {
+    return "(" + std::to_string(v.x_fx8) + ", " + std::to_string(v.y_fx8) + ")";
+}
+
+template <class T>
+std::string firstDifference(const std::string& plane, ImageView<const T> a, ImageView<const T> b) {
+    if (a.width != b.width || a.height != b.height) {
+        return plane + ": sizes differ";
+    }
+    for (int y = 0; y < a.height; ++y) {
+        for (int x = 0; x < a.width; ++x) {
+            if (!(a.at(x, y) == b.at(x, y))) {
+                return plane + ": tile (" + std::to_string(x / kTileSize) + ", " +
+                       std::to_string(y / kTileSize) + "), pixel (" + std::to_string(x) + ", " +
+                       std::to_string(y) + "): " + text(a.at(x, y)) + " and " + text(b.at(x, y));
+            }
+        }
+    }
+    return {};
+}
+
+template <class T>
+void compare(std::string& found, const std::string& plane, const Image<T>& a, const Image<T>& b) {
+    if (found.empty()) {
+        found = firstDifference(plane, a.view(), b.view());
+    }
+}
+
+}  // namespace
+
+std::string firstDifference(const GBuffer& a, const GBuffer& b) {
+    std::string found;
+    compare(found, "depth", a.depth, b.depth);
+    compare(found, "id", a.id, b.id);
+    if (a.planes.normal && b.planes.normal) {
+        compare(found, "normal", a.normal, b.normal);
+    }
+    if (a.planes.motion && b.planes.motion) {
+        compare(found, "motion", a.motion, b.motion);
+        compare(found, "depth_before", a.depth_before, b.depth_before);
+    }
+    compare(found, "red", a.red, b.red);
+    compare(found, "green", a.green, b.green);
+    compare(found, "blue", a.blue, b.blue);
+    return found;
+}
+
+}  // namespace still::test
