@@ -1,0 +1,123 @@
+// The pool hands out every grain once, whatever the schedule.
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rasterizer/workers.h"
+
+using namespace still;
+
+namespace {
+
+struct Range {
+    int begin, end;
+};
+
+/// Runs one parallelFor and returns the grains in the order in which they came.
+std::vector<Range> grains(Workers& workers, int count, int grain) {
+    std::mutex mutex;
+    std::vector<Range> seen;
+    workers.parallelFor(count, grain, [&](int begin, int end, int) {
+        std::lock_guard lock(mutex);
+        seen.push_back({begin, end});
+    });
+    return seen;
+}
+
+/// Empty, or what is wrong.
+std::string checkOnce(const std::vector<Range>& seen, int count, int grain) {
+    std::vector<int> hits(size_t(count), 0);
+    for (const Range& r : seen) {
+        if (r.begin % grain != 0 || r.end != std::min(r.begin + grain, count)) {
+            return "a grain is cut elsewhere than at a multiple";
+        }
+        for (int k = r.begin; k < r.end; ++k) {
+            ++hits[size_t(k)];
+        }
+    }
+    for (int hit : hits) {
+        if (hit != 1) {
+            return "an index was handed out " + std::to_string(hit) + " times";
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("workers: each index is handed out once for any threads and schedule", "[workers]") {
+    const Schedule schedule = GENERATE(Schedule::pooled, Schedule::serial, Schedule::shuffled);
+    const int threads = GENERATE(1, 2, 3, 8);
+    Workers workers(threads, schedule, 7);
+    for (int count : {0, 1, 2, 7, 64, 1000}) {
+        for (int grain : {1, 3, 64, 5000}) {
+            CAPTURE(int(schedule), threads, count, grain);
+            CHECK(checkOnce(grains(workers, count, grain), count, grain) == "");
+        }
+    }
+}
+
+TEST_CASE("workers: worker numbers stay below threads()", "[workers]") {
+    const Schedule schedule = GENERATE(Schedule::pooled, Schedule::serial, Schedule::shuffled);
+    Workers workers(3, schedule);
+    CHECK(workers.threads() == (schedule == Schedule::pooled ? 3 : 1));
+    std::atomic<bool> ok{true};
+    workers.parallelFor(500, 1, [&](int, int, int worker) {
+        if (worker < 0 || worker >= workers.threads()) {
+            ok = false;
+        }
+    });
+    CHECK(ok);
+}
+
+TEST_CASE("workers: two grains never share a worker number at the same time", "[workers]") {
+    Workers workers(8);
+    std::vector<std::atomic<int>> inside(8);
+    std::atomic<bool> ok{true};
+    for (int round = 0; round < 50; ++round) {
+        workers.parallelFor(100, 1, [&](int, int, int worker) {
+            if (inside[size_t(worker)].fetch_add(1) != 0) {
+                ok = false;
+            }
+            inside[size_t(worker)].fetch_sub(1);
+        });
+    }
+    CHECK(ok);
+}
+
+TEST_CASE("workers: a seed decides the shuffled order, serial order is ascending", "[workers]") {
+    const auto order = [](Schedule schedule, uint64_t seed) {
+        Workers workers(1, schedule, seed);
+        std::vector<int> begins;
+        for (const Range& r : grains(workers, 64, 1)) {
+            begins.push_back(r.begin);
+        }
+        return begins;
+    };
+    const std::vector<int> ascending = order(Schedule::serial, 0);
+    CHECK(std::is_sorted(ascending.begin(), ascending.end()));
+    CHECK(order(Schedule::shuffled, 5) == order(Schedule::shuffled, 5));
+    CHECK(order(Schedule::shuffled, 5) != order(Schedule::shuffled, 6));
+    CHECK(order(Schedule::shuffled, 5) != ascending);
+}
+
+TEST_CASE("workers: results are visible when parallelFor has returned", "[workers]") {
+    Workers workers(4);
+    std::vector<int> values(10000);
+    for (int round = 1; round <= 100; ++round) {
+        workers.parallelFor(int(values.size()), 16, [&](int begin, int end, int) {
+            for (int k = begin; k < end; ++k) {
+                values[size_t(k)] += k;
+            }
+        });
+        bool ok = true;
+        for (size_t k = 0; k < values.size(); ++k) {
+            ok = ok && values[k] == int(k) * round;
+        }
+        REQUIRE(ok);
+    }
+}
