@@ -69,6 +69,7 @@ struct CameraFileFrame {
 struct CameraFile {
     int width = 0, height = 0;
     std::vector<CameraFileFrame> frames;
+    std::vector<std::string> warnings;  ///< one line each, for standard error
 };
 
 struct SceneLights {
@@ -94,6 +95,8 @@ struct Scene {
     std::vector<AlphaTexture> alpha_textures;
     std::vector<SceneObject> objects;
     Camera camera;
+    /// The camera comes from frameScene() for 16:9; whoever knows the real aspect calls it again.
+    bool automatic_camera = false;
     std::vector<NamedView> views;
     SceneLights lights;
     std::array<float, 3> background{0.0f, 0.0f, 0.0f};  ///< linear light

@@ -1,0 +1,370 @@
+#include "engine/internal/scene_file.h"
+
+#include <algorithm>
+#include <map>
+
+#include "engine/internal/json.h"
+#include "engine/internal/json_tracks.h"
+#include "engine/internal/obj.h"
+#include "engine/internal/tracks.h"
+#include "engine/shapes.h"
+#include "engine/timeline.h"
+
+namespace still {
+namespace {
+
+constexpr size_t kMaxObjects = 65535;
+constexpr size_t kMaxPoints = 1000;
+constexpr size_t kMaxViews = 10000;
+constexpr double kMinFovDeg = 0.1, kMaxFovDeg = 170;
+
+/// Reads one scene file: the tree's checks, then the files that it names.
+class SceneFileReader {
+  public:
+    SceneFileReader(const std::filesystem::path& file, const JsonValue& tree)
+        : folder_(file.parent_path()),
+          report_{.file = file.string(), .error = {}, .warnings = {}},
+          root_(tree, report_) {
+        scene_.name = file.stem().string();
+        scene_.lights = defaultLights();
+    }
+
+    Result<Scene> read();
+
+  private:
+    void readObjects();
+    void readObject(const JsonCursor& cursor, size_t number);
+    void addObject(SceneObject object, uint32_t mesh);
+    uint32_t meshOf(const JsonCursor& obj);
+    uint32_t shapeOf(const JsonCursor& shape, const Material& material);
+    void readCamera(const JsonCursor& cursor);
+    void readViews(const JsonCursor& cursor);
+    void readSingleLight(const JsonCursor& cursor);
+    void readLights(const JsonCursor& cursor);
+    void readPoints(const JsonCursor& cursor);
+    void readCuts(const JsonCursor& cursor);
+    void chooseClipPlanes();
+
+    std::filesystem::path folder_;
+    JsonReport report_;
+    JsonCursor root_;
+    Scene scene_;
+    std::map<std::filesystem::path, uint32_t> mesh_of_file_;
+};
+
+Material readMaterial(const JsonCursor& cursor) {
+    cursor.expectKeys({"diffuse", "specular", "shininess", "emission", "opacity"});
+    Material material;
+    if (const auto colour = cursor.find("diffuse")) {
+        material.diffuse = readColour(*colour);
+    }
+    if (const auto colour = cursor.find("specular")) {
+        material.specular = readColour(*colour);
+    }
+    if (const auto colour = cursor.find("emission")) {
+        material.emission = readColour(*colour);
+    }
+    if (const auto shininess = cursor.find("shininess")) {
+        material.shininess = float(shininess->number(1, 1024));
+    }
+    if (const auto opacity = cursor.find("opacity")) {
+        material.opacity = float(opacity->number(0, 1));
+        material.alpha_mode = material.opacity < 1 ? AlphaMode::stochastic : AlphaMode::opaque;
+    }
+    return material;
+}
+
+ObjectTracks readTransform(const JsonCursor& cursor) {
+    ObjectTracks tracks;
+    if (const auto translation = cursor.find("translation")) {
+        tracks.translation = readPointTrack(*translation);
+    }
+    if (const auto rotation = cursor.find("rotation")) {
+        rotation->expectKeys({"axis", "degrees"});
+        tracks.rotation_axis = readDirection(rotation->require("axis"));
+        tracks.rotation_deg =
+            readNumberTrack(rotation->require("degrees"), -kMaxCoordinate, kMaxCoordinate);
+    }
+    if (const auto scale = cursor.find("scale")) {
+        tracks.scale = readScaleTrack(*scale);
+    }
+    return tracks;
+}
+
+Track<double> readIntensity(const JsonCursor& light) {
+    const auto intensity = light.find("intensity");
+    return intensity ? readNumberTrack(*intensity, 0, kMaxLight) : Track<double>{};
+}
+
+std::array<float, 3> colourOr(const JsonCursor& light, const std::array<float, 3>& fallback) {
+    const auto colour = light.find("colour");
+    return colour ? readColour(*colour) : fallback;
+}
+
+std::array<float, 3> toFloat(const glm::dvec3& v) {
+    return {float(v.x), float(v.y), float(v.z)};
+}
+
+uint32_t SceneFileReader::meshOf(const JsonCursor& obj) {
+    const std::filesystem::path file = folder_ / obj.text();
+    if (report_.error) {
+        return 0;
+    }
+    const auto known = mesh_of_file_.find(file);
+    if (known != mesh_of_file_.end()) {
+        return known->second;
+    }
+    Result<ObjModel> model = loadObj(file);
+    if (!model) {
+        obj.refuse(model.error().message);
+        return 0;
+    }
+    const std::vector<std::string> warnings = std::move(model->warnings);
+    scene_.warnings.insert(scene_.warnings.end(), warnings.begin(), warnings.end());
+    const uint32_t mesh = appendModel(scene_, std::move(*model), file.stem().string());
+    mesh_of_file_.emplace(file, mesh);
+    return mesh;
+}
+
+uint32_t SceneFileReader::shapeOf(const JsonCursor& shape, const Material& material) {
+    const std::string name = shape.text();
+    Result<Mesh> mesh = shapes::named(name);
+    if (!mesh) {
+        shape.refuse(mesh.error().message);
+        return 0;
+    }
+    mesh->parts[0].material = uint32_t(scene_.materials.size());
+    scene_.materials.push_back(material);
+    scene_.meshes.push_back(std::move(*mesh));
+    scene_.mesh_names.push_back(name);
+    return uint32_t(scene_.meshes.size() - 1);
+}
+
+void SceneFileReader::addObject(SceneObject object, uint32_t mesh) {
+    object.mesh = mesh;
+    if (!report_.error) {
+        scene_.objects.push_back(std::move(object));
+    }
+}
+
+void SceneFileReader::readObject(const JsonCursor& cursor, size_t number) {
+    cursor.expectKeys({"name", "obj", "shape", "material", "translation", "rotation", "scale"},
+                      {"notes", "comment"});
+    const auto obj = cursor.find("obj");
+    const auto shape = cursor.find("shape");
+    const auto material = cursor.find("material");
+    if (obj.has_value() == shape.has_value()) {
+        cursor.refuse("expected either \"obj\" or \"shape\"");
+        return;
+    }
+    if (obj && material) {
+        material->refuse("expected no material, since an OBJ brings its own");
+    }
+    SceneObject object;
+    const auto name = cursor.find("name");
+    object.name = name ? name->text() : "object " + std::to_string(number);
+    object.tracks = readTransform(cursor);
+    const uint32_t mesh =
+        obj ? meshOf(*obj) : shapeOf(*shape, material ? readMaterial(*material) : Material{});
+    addObject(std::move(object), mesh);
+}
+
+void SceneFileReader::readObjects() {
+    const auto obj = root_.find("obj");
+    const auto objects = root_.find("objects");
+    if (!obj && !objects) {
+        root_.refuse("expected \"obj\" or \"objects\"");
+        return;
+    }
+    if (obj) {
+        SceneObject object;
+        object.name = scene_.name;
+        addObject(std::move(object), meshOf(*obj));
+    }
+    if (objects) {
+        for (const JsonCursor& cursor : objects->items(1, kMaxObjects - 1)) {
+            readObject(cursor, scene_.objects.size() + 1);
+        }
+    }
+}
+
+void SceneFileReader::readCamera(const JsonCursor& cursor) {
+    cursor.expectKeys({"eye", "target", "up", "fov_y_deg", "near", "far"}, {"notes", "comment"});
+    Camera& camera = scene_.camera;
+    if (const auto fov = cursor.find("fov_y_deg")) {
+        camera.fov_y_deg = readNumberTrack(*fov, kMinFovDeg, kMaxFovDeg);
+    }
+    if (const auto up = cursor.find("up")) {
+        camera.up = readTrack(*up, readDirection);
+    }
+    camera.eye = readPointTrack(cursor.require("eye"));
+    camera.target = readPointTrack(cursor.require("target"));
+    camera.near = camera.far = 0;
+    if (const auto near = cursor.find("near")) {
+        camera.near = near->number(1e-9, kMaxCoordinate);
+    }
+    if (const auto far = cursor.find("far")) {
+        camera.far = far->number(1e-9, 1e3 * kMaxCoordinate);
+        if (camera.far <= camera.near) {
+            far->expected("a number larger than near");
+        }
+    }
+}
+
+/// Missing near and far: far is twice the way to the farthest corner of frame 0's bounds from any
+/// key of the eye, near a ten-thousandth of it.
+void SceneFileReader::chooseClipPlanes() {
+    Camera& camera = scene_.camera;
+    if (camera.far == 0) {
+        const Bounds box = scene_.bounds(0);
+        for (const auto& key : camera.eye.keys) {
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
+                                   (corner & 2) != 0 ? box.max.y : box.min.y,
+                                   (corner & 4) != 0 ? box.max.z : box.min.z);
+                camera.far = std::max(camera.far, 2 * lengthOf(p - key.value));
+            }
+        }
+        camera.far = std::max({camera.far, 2 * camera.near, 1e-6});
+    }
+    if (camera.near == 0) {
+        camera.near = camera.far * 1e-4;
+    }
+}
+
+void SceneFileReader::readViews(const JsonCursor& cursor) {
+    for (const JsonCursor& at : cursor.items(0, kMaxViews)) {
+        at.expectKeys({"name", "eye", "target", "up", "fov_y_deg"}, {"notes", "comment"});
+        NamedView view;
+        view.name = at.require("name").text();
+        view.pose.eye = readPoint(at.require("eye"));
+        view.pose.target = readPoint(at.require("target"));
+        if (const auto up = at.find("up")) {
+            view.pose.up = readDirection(*up);
+        }
+        if (const auto fov = at.find("fov_y_deg")) {
+            view.pose.fov_y_deg = fov->number(kMinFovDeg, kMaxFovDeg);
+        }
+        scene_.views.push_back(std::move(view));
+    }
+}
+
+void SceneFileReader::readSingleLight(const JsonCursor& cursor) {
+    cursor.expectKeys({"type", "direction", "colour", "intensity"}, {"notes", "comment"});
+    if (const auto type = cursor.find("type"); type && type->text() != "directional") {
+        type->expected("\"directional\"");
+    }
+    SceneLights& lights = scene_.lights;
+    lights.sun.direction = toFloat(readDirection(cursor.require("direction")));
+    lights.sun.colour = colourOr(cursor, lights.sun.colour);
+    lights.sun_intensity = readIntensity(cursor);
+}
+
+void SceneFileReader::readPoints(const JsonCursor& cursor) {
+    for (const JsonCursor& at : cursor.items(0, kMaxPoints)) {
+        at.expectKeys({"position", "colour", "intensity"}, {"name", "notes", "comment"});
+        PointLight point;
+        point.position = toFloat(readPoint(at.require("position")));
+        point.colour = colourOr(at, {1, 1, 1});
+        scene_.lights.points.push_back(point);
+        scene_.lights.point_intensity.push_back(readIntensity(at));
+    }
+}
+
+void SceneFileReader::readLights(const JsonCursor& cursor) {
+    cursor.expectKeys({"ambient", "directional", "points"}, {"notes", "comment"});
+    SceneLights& lights = scene_.lights;
+    lights.ambient = {0, 0, 0};
+    lights.sun = {};
+    if (const auto ambient = cursor.find("ambient")) {
+        ambient->expectKeys({"colour", "intensity"}, {"notes", "comment"});
+        lights.ambient = colourOr(*ambient, {1, 1, 1});
+        lights.ambient_intensity = readIntensity(*ambient);
+    }
+    if (const auto sun = cursor.find("directional")) {
+        sun->expectKeys({"direction", "colour", "intensity"}, {"notes", "comment"});
+        lights.sun.direction = toFloat(readDirection(sun->require("direction")));
+        lights.sun.colour = colourOr(*sun, {1, 1, 1});
+        lights.sun_intensity = readIntensity(*sun);
+    }
+    if (const auto points = cursor.find("points")) {
+        readPoints(*points);
+    }
+}
+
+void SceneFileReader::readCuts(const JsonCursor& cursor) {
+    for (const JsonCursor& at : cursor.items(0, SIZE_MAX)) {
+        const int frame = at.integer(0, kMaxFrame);
+        if (!scene_.cuts.empty() && frame <= scene_.cuts.back()) {
+            at.expected("a frame after the cut before");
+        }
+        scene_.cuts.push_back(frame);
+    }
+}
+
+Result<Scene> SceneFileReader::read() {
+    root_.expectKeys(
+        {"name", "obj", "objects", "camera", "views", "light", "lights", "background", "cuts"},
+        {"up", "unit_scale_m", "triangles", "bbox_min", "bbox_max", "alpha_test", "notes",
+         "comment"});
+    if (const auto name = root_.find("name")) {
+        scene_.name = name->text();
+    }
+    const auto camera = root_.find("camera");
+    scene_.automatic_camera = !camera.has_value();
+    if (camera) {
+        readCamera(*camera);
+    }
+    if (const auto views = root_.find("views")) {
+        readViews(*views);
+    }
+    const auto light = root_.find("light");
+    const auto lights = root_.find("lights");
+    if (light && lights) {
+        light->refuse("expected either \"light\" or \"lights\"");
+    } else if (light) {
+        readSingleLight(*light);
+    } else if (lights) {
+        readLights(*lights);
+    }
+    if (const auto background = root_.find("background")) {
+        scene_.background = readColour(*background);
+    }
+    if (const auto cuts = root_.find("cuts")) {
+        readCuts(*cuts);
+    }
+    readObjects();  // last: the files it names are slow to load
+    if (!report_.error && surfaceCount(scene_) > kMaxSurfaces) {
+        root_.refuse("expected at most " + std::to_string(kMaxSurfaces) + " surfaces, found " +
+                     std::to_string(surfaceCount(scene_)));
+    }
+    if (report_.error) {
+        return tl::make_unexpected(*report_.error);
+    }
+    if (camera) {
+        chooseClipPlanes();
+    }
+    scene_.warnings.insert(scene_.warnings.begin(), report_.warnings.begin(),
+                           report_.warnings.end());
+    return std::move(scene_);
+}
+
+}  // namespace
+
+SceneLights defaultLights() {
+    SceneLights lights;
+    lights.ambient = {0.25f, 0.25f, 0.25f};
+    lights.sun.direction = toFloat(unit({-0.4, -1, -0.6}));
+    lights.sun.colour = {0.75f, 0.75f, 0.75f};
+    return lights;
+}
+
+Result<Scene> loadSceneFile(const std::filesystem::path& file) {
+    const Result<JsonValue> tree = readJson(file);
+    if (!tree) {
+        return tl::make_unexpected(tree.error());
+    }
+    return SceneFileReader(file, *tree).read();
+}
+
+}  // namespace still

@@ -1,0 +1,18 @@
+#pragma once
+// The JSON scene file, format in engine/README.md.
+
+#include <filesystem>
+
+#include "engine/result.h"
+#include "engine/scene.h"
+
+namespace still {
+
+/// Reads NAME.json. A scene without camera keeps the default one and has automatic_camera set.
+Result<Scene> loadSceneFile(const std::filesystem::path& file);
+
+/// Daylight from the right, above and in front, for files that say nothing: a white surface that
+/// faces the sun is 0.25 + 0.75 = 1.
+SceneLights defaultLights();
+
+}  // namespace still
