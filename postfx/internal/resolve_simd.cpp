@@ -1,0 +1,4 @@
+#include "postfx/internal/resolve.h"
+namespace still::taa {
+TileKernel tileKernel(SimdTarget) { return resolveTileReference; }
+}
