@@ -17,9 +17,9 @@ constexpr uint32_t kTaaPeriod = 64;
 /// itself a (0,2)-net, and the offsets of a period have zero mean.
 SampleOffset taaSample(uint32_t index);
 
-/// Sample `index` of a net of `count` samples for ssaa references; count ≥ 1. A single sample is
-/// the pixel's centre. Nets of up to 128 samples (powers of two) have zero mean; 256 and more use
-/// the full 1/256 grid (mean −1/512 pixel).
+/// Sample `index` of a set of `count` samples for ssaa references; 1 ≤ count ≤ 65536. A single
+/// sample is the pixel's centre. Powers of two are (0,2)-nets: up to 128 samples they have zero
+/// mean, 256 and more use the full 1/256 grid (mean −1/512 pixel). Other counts are nearly as even.
 SampleOffset ssaaSample(uint32_t index, uint32_t count);
 
 }  // namespace still
