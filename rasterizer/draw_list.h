@@ -62,8 +62,8 @@ struct Texture {
     std::vector<uint32_t> texels;
 };
 
-/// One byte per texel, 255 = opaque. `texels` carries 4 spare bytes at its end, so that a kernel may
-/// load 32 bits at any texel.
+/// One byte per texel, 255 = opaque. `texels` carries 4 spare bytes at its end, so that a kernel
+/// may load 32 bits at any texel.
 struct AlphaTexture {
     Wrap wrap = Wrap::repeat;
     std::vector<TextureLevel> levels;
@@ -95,8 +95,8 @@ struct Material {
 using Affine = std::array<float, 12>;
 constexpr Affine kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/// One drawn mesh. Its surfaces are first_surface … first_surface + parts − 1; surfaces are numbered
-/// from 1, without gaps, in submission order. 0 is the background.
+/// One drawn mesh. Its surfaces are first_surface … first_surface + parts − 1; surfaces are
+/// numbered from 1, without gaps, in submission order. 0 is the background.
 struct Instance {
     uint32_t mesh = 0;
     uint16_t object = 0;         ///< 1-based object number, for people and for id dumps
@@ -142,8 +142,8 @@ struct DrawList {
 /// Camera and time of one frame.
 struct FrameView {
     int width = 0, height = 0;  ///< 1 … kMaxTargetSize
-    /// Projection · view, unjittered, OpenGL clip space (z in −w … w). Double, because reversed Z and
-    /// reprojection are derived from them before anything is rounded to float.
+    /// Projection · view, unjittered, OpenGL clip space (z in −w … w). Double, because reversed Z
+    /// and reprojection are derived from them before anything is rounded to float.
     glm::dmat4 view_projection{1.0};
     glm::dmat4 view_projection_before{1.0};  ///< of the previous frame
     glm::vec3 eye{0.0f};                     ///< world position, for highlights

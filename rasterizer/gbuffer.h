@@ -19,7 +19,8 @@ struct PlaneSet {
     friend bool operator==(const PlaneSet&, const PlaneSet&) = default;
 };
 
-/// Bits of the id plane: surface number (0 = background), and whether that surface's instance moved.
+/// Bits of the id plane: surface number (0 = background), and whether that surface's instance
+/// moved.
 constexpr uint16_t kSurfaceMask = 0x7FFF;
 constexpr uint16_t kMovedBit = 0x8000;
 
@@ -50,7 +51,7 @@ struct GBuffer {
     Image<uint16_t> red, green, blue;  ///< linear light, 1.0 = 4096 (fx12), saturated
     Image<uint32_t> depth;             ///< bits of the reversed-Z float, see logDepth16()
     Image<uint16_t> id;                ///< kSurfaceMask, kMovedBit
-    Image<uint32_t> normal;            ///< octahedral: low 16 bits x, high 16 bits y, snorm16; world
+    Image<uint32_t> normal;  ///< octahedral: low 16 bits x, high 16 bits y, snorm16; world
     Image<Motion> motion;
     Image<uint16_t> depth_before;  ///< logDepth16 the surface had in the previous frame (expected)
     int tiles_x = 0, tiles_y = 0;

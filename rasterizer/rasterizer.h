@@ -1,5 +1,6 @@
 #pragma once
-// Draw list in, G-buffer out: vertices → clip → setup → bins → tile { coverage → visibility → shade }.
+// Draw list in, G-buffer out: vertices → clip → setup → bins → tile { coverage → visibility → shade
+// }.
 
 #include <cstdint>
 #include <memory>

@@ -10,13 +10,20 @@ namespace still {
 
 std::string_view name(SimdTarget target) {
     switch (target) {
-        case SimdTarget::scalar: return "scalar";
-        case SimdTarget::ssse3: return "ssse3";
-        case SimdTarget::sse4: return "sse4";
-        case SimdTarget::avx2: return "avx2";
-        case SimdTarget::avx512: return "avx512";
-        case SimdTarget::neon: return "neon";
-        case SimdTarget::wasm: return "wasm";
+        case SimdTarget::scalar:
+            return "scalar";
+        case SimdTarget::ssse3:
+            return "ssse3";
+        case SimdTarget::sse4:
+            return "sse4";
+        case SimdTarget::avx2:
+            return "avx2";
+        case SimdTarget::avx512:
+            return "avx512";
+        case SimdTarget::neon:
+            return "neon";
+        case SimdTarget::wasm:
+            return "wasm";
     }
     return "unknown";
 }

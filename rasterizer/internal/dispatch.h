@@ -15,16 +15,23 @@ namespace still::internal {
 constexpr int64_t highwayBit(SimdTarget target) {
     switch (target) {
 #if HWY_ARCH_X86
-        case SimdTarget::ssse3: return HWY_SSSE3;
-        case SimdTarget::sse4: return HWY_SSE4;
-        case SimdTarget::avx2: return HWY_AVX2;
-        case SimdTarget::avx512: return HWY_AVX3;
+        case SimdTarget::ssse3:
+            return HWY_SSSE3;
+        case SimdTarget::sse4:
+            return HWY_SSE4;
+        case SimdTarget::avx2:
+            return HWY_AVX2;
+        case SimdTarget::avx512:
+            return HWY_AVX3;
 #elif HWY_ARCH_ARM
-        case SimdTarget::neon: return HWY_NEON;
+        case SimdTarget::neon:
+            return HWY_NEON;
 #elif HWY_ARCH_WASM
-        case SimdTarget::wasm: return HWY_WASM;
+        case SimdTarget::wasm:
+            return HWY_WASM;
 #endif
-        default: return 0;
+        default:
+            return 0;
     }
 }
 

@@ -1,0 +1,24 @@
+#pragma once
+// Sutherland–Hodgman clipping (1974) in homogeneous space, for the few triangles that cross the
+// near plane or leave the guard band.
+
+#include "rasterizer/internal/kernels.h"
+#include "rasterizer/internal/vertex_reference.h"
+
+namespace still::internal {
+
+struct ClippedVertex {
+    ClipVertex position;
+    float b[3];  ///< barycentric coordinates in the source triangle
+};
+
+/// A triangle cut by five planes has at most eight corners.
+constexpr int kMaxClippedCorners = 8;
+
+/// Clips against the near plane and the four guard planes |x|, |y| ≤ guard · w. Returns the number
+/// of corners, 0 when nothing is left. New corners are interpolated from the inside towards the
+/// outside, so that two triangles that share an edge get the same corner.
+int clipTriangle(const ClipVertex corners[3], float guard_x, float guard_y,
+                 ClippedVertex out[kMaxClippedCorners]);
+
+}  // namespace still::internal

@@ -1,0 +1,182 @@
+#pragma once
+// What the stages hand to the SIMD kernels, and the table of kernels. Each kernel stands in
+// NAME-inl.h (Highway) and NAME_reference.cpp (the plain scalar truth).
+
+#include <cstdint>
+
+#include "rasterizer/draw_list.h"
+#include "rasterizer/gbuffer.h"
+#include "rasterizer/internal/matrix.h"
+#include "rasterizer/simd.h"
+
+namespace still::internal {
+
+// ---- vertex stage ----------------------------------------------------------------------------
+
+/// Why a vertex may need care. A triangle whose vertices share one of the frustum bits is outside.
+enum Outcode : uint8_t {
+    kOutNear = 1,  ///< in front of the near plane or w ≤ 0: no screen position
+    kOutLeft = 2,  ///< beyond the picture's edge by more than a pixel
+    kOutRight = 4,
+    kOutTop = 8,
+    kOutBottom = 16,
+    kOutFar = 32,
+    kOutGuard = 64,    ///< farther than the guard band: no screen position
+    kOutInvalid = 128  ///< not finite: the triangle is dropped
+};
+
+/// Half size of the guard band around the picture's centre, in pixels: edge lengths stay below 2^15
+/// pixels, so that edge functions fit 64 bits and, inside a tile, 32 bits.
+constexpr float kGuardBandPx = 16384.0f;
+
+/// Screen positions of one instance's vertices. x, y are relative to the picture's top left, still
+/// without jitter; all four are 0 where the outcode says there is no position.
+struct ScreenVertices {
+    int32_t* x_fx8;
+    int32_t* y_fx8;
+    float* z;  ///< reversed depth
+    float* inv_w;
+    uint8_t* outcode;
+};
+
+struct VertexJob {
+    const float *x, *y, *z;          ///< object space
+    MatrixF clip;                    ///< rows x, y, z' (reversed), w
+    float scale_x_fx8, scale_y_fx8;  ///< NDC → 1/256 pixel: 128·width, −128·height
+    int32_t centre_x_fx8, centre_y_fx8;
+    float frustum_x, frustum_y;  ///< 1 plus one pixel in NDC
+    float guard_fx8;
+    ScreenVertices out;
+};
+
+// ---- triangles -------------------------------------------------------------------------------
+
+/// A triangle ready for coverage. Positions are relative to the sample of pixel (0, 0): pixel (x,
+/// y) is sampled at (256·x, 256·y). Oriented so that its doubled area is positive with y down.
+struct SetupTriangle {
+    int32_t x_fx8[3], y_fx8[3];
+    float inv_w[3];
+    float z_min, z_max;
+    double z_origin, z_dx, z_dy;  ///< depth at pixel (0, 0) and per pixel
+    uint32_t triangle;            ///< in its mesh
+    int32_t clip;                 ///< index of its barycentrics, or −1 when it was not clipped
+    uint16_t surface;
+    uint8_t swapped;  ///< vertices 1 and 2 were exchanged to orient it
+    uint8_t alpha;    ///< its surface is alpha-tested or stochastic
+};
+
+/// Barycentric coordinates of a clipped triangle's vertices in the triangle it came from.
+struct ClipBarycentrics {
+    float b[3][3];
+};
+
+/// What shading needs of a triangle that is visible in a tile: b_k / w as planes over the tile,
+/// evaluated from an anchor pixel near the triangle so that slivers keep their precision. Kernels
+/// gather its 16 words, so the layout is fixed.
+struct alignas(64) ShadeTriangle {
+    float p[3], p_dx[3], p_dy[3];
+    float anchor_x, anchor_y;  ///< tile-local pixel
+    int32_t vertex[3];
+    int32_t surface;
+    float flip;  ///< −1 when the shading normal points away from the eye
+};
+static_assert(sizeof(ShadeTriangle) == 64);
+constexpr int kShadeWords = 16;
+
+// ---- frame-wide tables -----------------------------------------------------------------------
+
+/// What a surface's shading needs; a tile runs the smallest kernel that covers its surfaces.
+enum ShadeFeature : uint8_t {
+    kShadeTexture = 1,
+    kShadeNormalMap = 2,
+    kShadePosition = 4,  ///< highlights or point lights
+    kShadeMoved = 8,
+};
+
+struct Surface {
+    const float* attributes = nullptr;  ///< VertexAttributes as floats, stride 5
+    const float* tangents = nullptr;    ///< VertexTangent as floats, stride 4
+    const float *x = nullptr, *y = nullptr, *z = nullptr;
+    const uint32_t* indices = nullptr;
+    const Material* material = nullptr;
+    const Texture* colour = nullptr;
+    const Texture* normal = nullptr;
+    const AlphaTexture* alpha = nullptr;
+    uint32_t instance = 0;
+    uint8_t features = 0;
+    int shininess = 0;  ///< 0 = no highlight
+};
+
+struct InstanceSetup {
+    MatrixF clip;  ///< object → reversed-depth clip space
+    Affine world;
+    float normal[9];  ///< inverse transpose of world's 3×3, up to scale
+    bool identity = true;
+    bool mirrored = false;  ///< the transform turns triangles inside out
+    bool moved = false;
+    MatrixF pixels_now, pixels_before;  ///< object → (x_px·w, y_px·w, z', w); only when moved
+};
+
+struct FrameTables {
+    const DrawList* list = nullptr;
+    const FrameView* view = nullptr;
+    PlaneSet planes;
+    bool camera_moved = false;
+    Matrix reproject;  ///< (x_px, y_px, z, 1) now → (x_px·w, y_px·w, z', w) before
+    const Surface* surfaces = nullptr;  ///< [0] is unused: the background
+    const InstanceSetup* instances = nullptr;
+};
+
+// ---- tile stage ------------------------------------------------------------------------------
+
+constexpr int kTilePixels = kTileSize * kTileSize;
+constexpr int kBlockSize = 8;
+constexpr int kBlocksPerTile = kTileSize / kBlockSize;
+constexpr uint32_t kNothingVisible = 0xFFFFFFFFu;
+
+/// One triangle of a tile, in submission order.
+struct TriangleRef {
+    const SetupTriangle* triangle;
+    const ClipBarycentrics* clips;  ///< of the chunk the triangle is in
+};
+
+/// Where a tile's pixels go: first pixel of each plane, strides in elements.
+struct TilePlanes {
+    uint16_t *red, *green, *blue, *id, *depth_before;
+    uint32_t *depth, *normal;
+    Motion* motion;  ///< null: the plane is not wanted or stays zero
+    ptrdiff_t stride;
+};
+
+/// A tile in work. Arrays of kTilePixels are row by row, kTileSize wide.
+struct TileContext {
+    const FrameTables* frame = nullptr;
+    int x0 = 0, y0 = 0;  ///< of the tile in the picture
+    int width = 0, height = 0;
+    const TriangleRef* refs = nullptr;
+    uint32_t ref_count = 0;
+    bool forward = false;
+    float* depth = nullptr;
+    uint32_t* visible = nullptr;  ///< index into refs (and shade), or kNothingVisible
+    /// One per ref; filled where it is read: before visibility for alpha (and in forward mode for
+    /// all), after it for visible triangles.
+    ShadeTriangle* shade = nullptr;
+    uint8_t features = 0;  ///< union of the surfaces that may be visible
+    TilePlanes planes{};
+    MatrixF reproject{};  ///< tile-local: (x, y, z, 1) → (x_local·w, y_local·w, z', w) before
+};
+
+struct RasterKernels {
+    void (*transformVertices)(const VertexJob& job, int begin, int end);
+    /// Fills depth and visible; in forward mode also shades into the planes.
+    void (*rasterizeTile)(TileContext& tile);
+    /// Shades every pixel of the tile once, by `visible`.
+    void (*shadeTile)(const TileContext& tile);
+};
+
+/// The plain scalar kernels that define the truth.
+const RasterKernels& referenceKernels();
+/// Kernels for a target of availableSimdTargets().
+const RasterKernels& kernelsFor(SimdTarget target);
+
+}  // namespace still::internal

@@ -1,0 +1,261 @@
+#include "rasterizer/internal/tile.h"
+
+#include <bit>
+
+#include "rasterizer/fixed.h"
+#include "rasterizer/internal/triangle_setup.h"
+
+namespace still::internal {
+
+TilePlane makeTilePlane(const SetupTriangle& t, const TileContext& tile) {
+    const PixelBox box = pixelBox(t, tile.x0 + tile.width, tile.y0 + tile.height);
+    TilePlane p;
+    p.x0 = std::max(box.x0 - tile.x0, 0);
+    p.y0 = std::max(box.y0 - tile.y0, 0);
+    p.x1 = box.x1 - tile.x0;
+    p.y1 = box.y1 - tile.y0;
+    p.origin = float(t.z_origin + (t.z_dx * (tile.x0 + p.x0) + t.z_dy * (tile.y0 + p.y0)));
+    p.dx = float(t.z_dx);
+    p.dy = float(t.z_dy);
+    p.min = t.z_min;
+    p.max = t.z_max;
+    return p;
+}
+
+namespace {
+
+/// +1 when the interpolated normals look towards the eye, −1 when they have to be turned. The
+/// side that is seen is the geometric one; which way its normal counts as outward is told by the
+/// vertex normals, so that models with inconsistent winding are lit right, too.
+float shadingFlip(const Surface& s, const InstanceSetup& instance, const uint32_t index[3],
+                  bool counter_clockwise) {
+    double p[3][3], n[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+        p[k][0] = double(s.x[index[k]]);
+        p[k][1] = double(s.y[index[k]]);
+        p[k][2] = double(s.z[index[k]]);
+        for (int i = 0; i < 3; ++i) {
+            n[i] += double(s.attributes[size_t(index[k]) * 5 + size_t(i)]);
+        }
+    }
+    double a[3], b[3];
+    for (int i = 0; i < 3; ++i) {
+        a[i] = p[1][i] - p[0][i];
+        b[i] = p[2][i] - p[0][i];
+    }
+    const double along = ((a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1]) +
+                         (a[0] * b[1] - a[1] * b[0]) * n[2];
+    const bool winding_side_seen = counter_clockwise != instance.mirrored;
+    return winding_side_seen == (along >= 0.0) ? 1.0f : -1.0f;
+}
+
+}  // namespace
+
+void makeShadeTriangle(const FrameTables& frame, const TriangleRef& ref, int tile_x0, int tile_y0,
+                       ShadeTriangle& out) {
+    const SetupTriangle& t = *ref.triangle;
+    const Surface& s = frame.surfaces[t.surface];
+    const int anchor_x =
+        std::max(tile_x0, (std::min({t.x_fx8[0], t.x_fx8[1], t.x_fx8[2]}) + 255) >> 8);
+    const int anchor_y =
+        std::max(tile_y0, (std::min({t.y_fx8[0], t.y_fx8[1], t.y_fx8[2]}) + 255) >> 8);
+    double value[3], dx[3], dy[3];  // of p_k = λ_k / w_k, in the setup triangle's vertex order
+    double area2 = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int i = k == 2 ? 0 : k + 1;  // the edge opposite to vertex k runs from i to j
+        const int j = i == 2 ? 0 : i + 1;
+        const int64_t ex = t.x_fx8[j] - t.x_fx8[i], ey = t.y_fx8[j] - t.y_fx8[i];
+        const int64_t e = ex * (anchor_y * kSubpixelOne - t.y_fx8[i]) -
+                          ey * (anchor_x * kSubpixelOne - t.x_fx8[i]);
+        value[k] = double(e);
+        dx[k] = double(-ey * kSubpixelOne);
+        dy[k] = double(ex * kSubpixelOne);
+        area2 += value[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double scale = double(t.inv_w[k]) / area2;
+        value[k] *= scale;
+        dx[k] *= scale;
+        dy[k] *= scale;
+    }
+    const int order[3] = {0, t.swapped != 0 ? 2 : 1, t.swapped != 0 ? 1 : 2};
+    const uint32_t* index = s.indices + size_t(t.triangle) * 3;
+    for (int k = 0; k < 3; ++k) {
+        double v = 0, vx = 0, vy = 0;
+        for (int c = 0; c < 3; ++c) {
+            // Setup corner c is source corner order[c], or a clipped corner between all three.
+            const double weight = t.clip >= 0 ? double(ref.clips[t.clip].b[order[c]][k])
+                                              : (order[c] == k ? 1.0 : 0.0);
+            v += value[c] * weight;
+            vx += dx[c] * weight;
+            vy += dy[c] * weight;
+        }
+        out.p[k] = float(v);
+        out.p_dx[k] = float(vx);
+        out.p_dy[k] = float(vy);
+        out.vertex[k] = int32_t(index[k]);
+    }
+    out.anchor_x = float(anchor_x - tile_x0);
+    out.anchor_y = float(anchor_y - tile_y0);
+    out.surface = t.surface;
+    // With y down, the triangles that had to be swapped run counter-clockwise on the screen.
+    out.flip = shadingFlip(s, frame.instances[s.instance], index, t.swapped != 0);
+}
+
+namespace {
+
+void collectRefs(const std::vector<Chunk>& chunks, size_t chunk_count, int tx, int ty,
+                 std::vector<TriangleRef>& refs) {
+    refs.clear();
+    for (size_t i = 0; i < chunk_count; ++i) {
+        const Chunk& chunk = chunks[i];
+        const Chunk::Range range = chunk.itemsOf(tx, ty);
+        for (const uint32_t* item = range.begin; item != range.end; ++item) {
+            refs.push_back({&chunk.triangles[*item], chunk.clips.data()});
+        }
+    }
+}
+
+class TileRenderer {
+  public:
+    TileRenderer(const FrameSetup& setup, TileContext& tile, TileScratch& scratch)
+        : setup_(setup), tile_(tile), scratch_(scratch) {
+        scratch.shade.resize(scratch.refs.size());
+        scratch.shade_ready.assign(scratch.refs.size(), 0);
+        tile.shade = scratch.shade.data();
+    }
+
+    void prepareBeforeVisibility() {
+        for (uint32_t ref = 0; ref < tile_.ref_count; ++ref) {
+            if (tile_.forward || tile_.refs[ref].triangle->alpha != 0) {
+                prepare(ref);
+            }
+        }
+    }
+
+    void prepareVisible() {
+        uint32_t last = kNothingVisible;
+        for (int y = 0; y < tile_.height; ++y) {
+            for (int x = 0; x < tile_.width; ++x) {
+                const uint32_t ref = tile_.visible[y * kTileSize + x];
+                if (ref != last && ref != kNothingVisible) {
+                    prepare(ref);
+                    tile_.features |= setup_.surfaces[tile_.refs[ref].triangle->surface].features;
+                }
+                last = ref;
+            }
+        }
+    }
+
+  private:
+    void prepare(uint32_t ref) {
+        if (scratch_.shade_ready[ref] == 0) {
+            scratch_.shade_ready[ref] = 1;
+            makeShadeTriangle(setup_.tables, tile_.refs[ref], tile_.x0, tile_.y0, tile_.shade[ref]);
+        }
+    }
+
+    const FrameSetup& setup_;
+    TileContext& tile_;
+    TileScratch& scratch_;
+};
+
+TilePlanes planesAt(GBuffer& g, int x, int y) {
+    const auto at = [&](auto& image) { return image.empty() ? nullptr : image.view().row(y) + x; };
+    TilePlanes p;
+    p.red = at(g.red);
+    p.green = at(g.green);
+    p.blue = at(g.blue);
+    p.id = at(g.id);
+    p.depth = at(g.depth);
+    p.normal = at(g.normal);
+    p.motion = at(g.motion);
+    p.depth_before = at(g.depth_before);
+    p.stride = g.red.view().stride;
+    return p;
+}
+
+void notePixels(const TileContext& tile, TileFacts& facts) {
+    const uint16_t first = tile.planes.id[0];
+    uint32_t different = 0;
+    int32_t low = INT32_MAX, high = 0;  // depth bits of values ≥ 0 sort as signed integers
+    for (int y = 0; y < tile.height; ++y) {
+        const uint16_t* id = tile.planes.id + y * tile.planes.stride;
+        const uint32_t* depth = tile.planes.depth + y * tile.planes.stride;
+        for (int x = 0; x < tile.width; ++x) {
+            different |= uint32_t(id[x] ^ first);
+            low = std::min(low, int32_t(depth[x]));
+            high = std::max(high, int32_t(depth[x]));
+        }
+    }
+    facts.single_surface = different == 0;
+    facts.surface = first & kSurfaceMask;
+    facts.min_depth = uint32_t(low);
+    facts.max_depth = uint32_t(high);
+}
+
+/// Zeros for a tile in which nothing moved: motion is zero, and the expected depth is its own.
+void writeStillMotion(const TileContext& tile) {
+    for (int y = 0; y < tile.height; ++y) {
+        const ptrdiff_t at = y * tile.planes.stride;
+        std::fill_n(tile.planes.motion + at, tile.width, Motion{});
+        std::fill_n(tile.planes.depth_before + at, tile.width, uint16_t{0});
+    }
+}
+
+}  // namespace
+
+void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
+                const RasterSettings& settings, int tx, int ty, GBuffer& out, uint8_t& zero_motion,
+                TileScratch& scratch) {
+    const FrameTables& frame = setup.tables;
+    TileContext tile;
+    tile.frame = &frame;
+    tile.x0 = tx * kTileSize;
+    tile.y0 = ty * kTileSize;
+    tile.width = std::min(kTileSize, frame.view->width - tile.x0);
+    tile.height = std::min(kTileSize, frame.view->height - tile.y0);
+    tile.forward = settings.shading == Shading::forward;
+    tile.depth = scratch.depth;
+    tile.visible = scratch.visible;
+    tile.planes = planesAt(out, tile.x0, tile.y0);
+    tile.reproject = tileReprojection(frame, tile.x0, tile.y0);
+
+    collectRefs(chunks, chunk_count, tx, ty, scratch.refs);
+    tile.refs = scratch.refs.data();
+    tile.ref_count = uint32_t(scratch.refs.size());
+
+    TileFacts& facts = out.tiles[size_t(ty) * size_t(out.tiles_x) + size_t(tx)];
+    facts = {};
+    facts.camera_moved = frame.camera_moved;
+    facts.moved = setup.moved_tiles[size_t(ty) * size_t(out.tiles_x) + size_t(tx)] != 0;
+    for (const TriangleRef& ref : scratch.refs) {
+        facts.stochastic |=
+            ref.triangle->alpha != 0 &&
+            frame.surfaces[ref.triangle->surface].material->alpha_mode == AlphaMode::stochastic;
+    }
+    if (facts.still() && tile.planes.motion != nullptr) {
+        if (zero_motion == 0) {
+            writeStillMotion(tile);
+        }
+        tile.planes.motion = nullptr;
+        zero_motion = 1;
+    } else {
+        zero_motion = 0;
+    }
+
+    const RasterKernels& kernels = kernelsFor(settings.simd);
+    TileRenderer renderer(setup, tile, scratch);
+    renderer.prepareBeforeVisibility();
+    if (tile.forward) {
+        tile.features = 0xFF;
+    }
+    kernels.rasterizeTile(tile);
+    if (!tile.forward) {
+        renderer.prepareVisible();
+        kernels.shadeTile(tile);
+    }
+    notePixels(tile, facts);
+}
+
+}  // namespace still::internal

@@ -1,0 +1,48 @@
+#pragma once
+// One tile from bins to planes: collects its triangles, runs visibility and shading, and notes the
+// facts that later passes use.
+
+#include <algorithm>
+#include <vector>
+
+#include "rasterizer/internal/binner.h"
+#include "rasterizer/internal/frame_setup.h"
+
+namespace still::internal {
+
+/// Depth of a triangle inside a tile: at(x, y) is monotonic in x and in y (each rounding is), so
+/// the corner of a block gives the exact bound of its samples. The origin is the first pixel of the
+/// triangle's bounds in the tile, not the tile's corner: slivers with steep planes stay exact.
+struct TilePlane {
+    int x0, y0, x1, y1;  ///< tile-local bounds, inclusive
+    float origin, dx, dy;
+    float min, max;  ///< of the triangle's vertices: rounding never leaves this range
+
+    float at(int x, int y) const {
+        const float z = (origin + dy * float(y - y0)) + dx * float(x - x0);
+        return std::min(std::max(z, min), max);
+    }
+};
+
+TilePlane makeTilePlane(const SetupTriangle& t, const TileContext& tile);
+
+/// Fills the record for shading `ref` in a tile that starts at pixel (tile_x0, tile_y0).
+void makeShadeTriangle(const FrameTables& frame, const TriangleRef& ref, int tile_x0, int tile_y0,
+                       ShadeTriangle& out);
+
+/// Scratch of one worker.
+struct TileScratch {
+    std::vector<TriangleRef> refs;
+    std::vector<ShadeTriangle> shade;
+    std::vector<uint8_t> shade_ready;
+    alignas(64) float depth[kTilePixels];
+    alignas(64) uint32_t visible[kTilePixels];
+};
+
+/// Renders tile (tx, ty). `zero_motion` tells, per tile, that its motion plane already holds zeros;
+/// it is read and updated.
+void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
+                const RasterSettings& settings, int tx, int ty, GBuffer& out, uint8_t& zero_motion,
+                TileScratch& scratch);
+
+}  // namespace still::internal

@@ -1,0 +1,90 @@
+// Vertex stage, one vertex per lane; see vertex_reference.cpp for the truth.
+// Included once per target by kernels_simd.cpp.
+
+HWY_BEFORE_NAMESPACE();
+namespace still::internal {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D, class V = hn::Vec<D>>
+V transformRow(D d, const float m[4], V x, V y, V z) {
+    return hn::Add(hn::Add(hn::Mul(hn::Set(d, m[0]), x), hn::Mul(hn::Set(d, m[1]), y)),
+                   hn::Add(hn::Mul(hn::Set(d, m[2]), z), hn::Set(d, m[3])));
+}
+
+/// floor(v + 0.5) as integers, as roundToInt().
+template <class D, class V = hn::Vec<D>>
+hn::Vec<hn::RebindToSigned<D>> roundLanes(D d, V v) {
+    return hn::ConvertTo(hn::RebindToSigned<D>(), hn::Floor(hn::Add(v, hn::Set(d, 0.5f))));
+}
+
+template <class D>
+void transformGroup(D d, const VertexJob& job, int i) {
+    const hn::RebindToSigned<D> di;
+    const hn::Rebind<uint8_t, D> du8;
+    using V = hn::Vec<D>;
+    const V px = hn::LoadU(d, job.x + i);
+    const V py = hn::LoadU(d, job.y + i);
+    const V pz = hn::LoadU(d, job.z + i);
+    const V x = transformRow(d, job.clip.m[0], px, py, pz);
+    const V y = transformRow(d, job.clip.m[1], px, py, pz);
+    const V z = transformRow(d, job.clip.m[2], px, py, pz);
+    const V w = transformRow(d, job.clip.m[3], px, py, pz);
+
+    const V zero = hn::Zero(d);
+    // v − v is 0 for finite v and NaN otherwise.
+    const V spread =
+        hn::Add(hn::Add(hn::Sub(x, x), hn::Sub(y, y)), hn::Add(hn::Sub(z, z), hn::Sub(w, w)));
+    const auto finite = hn::Eq(spread, zero);
+    const V fx = hn::Mul(hn::Set(d, job.frustum_x), w);
+    const V fy = hn::Mul(hn::Set(d, job.frustum_y), w);
+    const auto near_ok = hn::And(hn::Le(z, w), hn::Gt(w, hn::Set(d, 1e-20f)));
+    const auto ok_div = hn::And(near_ok, finite);
+
+    const V r = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(ok_div, w, hn::Set(d, 1.0f)));
+    const V sx = hn::Mul(hn::Mul(x, r), hn::Set(d, job.scale_x_fx8));
+    const V sy = hn::Mul(hn::Mul(y, r), hn::Set(d, job.scale_y_fx8));
+    const V guard = hn::Set(d, job.guard_fx8);
+    const auto guard_ok = hn::And(hn::Le(hn::Abs(sx), guard), hn::Le(hn::Abs(sy), guard));
+    const auto valid = hn::And(ok_div, guard_ok);
+
+    const auto bit = [&](auto mask, int value) {
+        return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, value));
+    };
+    auto code = bit(hn::Not(near_ok), kOutNear);
+    code = hn::Or(code, bit(hn::Lt(x, hn::Neg(fx)), kOutLeft));
+    code = hn::Or(code, bit(hn::Gt(x, fx), kOutRight));
+    code = hn::Or(code, bit(hn::Gt(y, fy), kOutTop));
+    code = hn::Or(code, bit(hn::Lt(y, hn::Neg(fy)), kOutBottom));
+    code = hn::Or(code, bit(hn::Lt(z, zero), kOutFar));
+    code = hn::Or(code, bit(hn::And(ok_div, hn::Not(guard_ok)), kOutGuard));
+    code = hn::IfThenElse(hn::RebindMask(di, finite), code, hn::Set(di, int32_t{kOutInvalid}));
+
+    const auto valid_i = hn::RebindMask(di, valid);
+    const auto x_fx8 =
+        hn::Add(roundLanes(d, hn::IfThenElseZero(valid, sx)), hn::Set(di, job.centre_x_fx8));
+    const auto y_fx8 =
+        hn::Add(roundLanes(d, hn::IfThenElseZero(valid, sy)), hn::Set(di, job.centre_y_fx8));
+    hn::StoreU(hn::IfThenElseZero(valid_i, x_fx8), di, job.out.x_fx8 + i);
+    hn::StoreU(hn::IfThenElseZero(valid_i, y_fx8), di, job.out.y_fx8 + i);
+    hn::StoreU(hn::IfThenElseZero(valid, hn::Mul(z, r)), d, job.out.z + i);
+    hn::StoreU(hn::IfThenElseZero(valid, r), d, job.out.inv_w + i);
+    hn::StoreU(hn::DemoteTo(du8, code), du8, job.out.outcode + i);
+}
+
+void transformVertices(const VertexJob& job, int begin, int end) {
+    const hn::CappedTag<float, 8> d;
+    const int lanes = int(hn::Lanes(d));
+    int i = begin;
+    for (; i + lanes <= end; i += lanes) {
+        transformGroup(d, job, i);
+    }
+    const hn::CappedTag<float, 1> d1;
+    for (; i < end; ++i) {
+        transformGroup(d1, job, i);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace still::internal
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,61 @@
+// Object space → snapped screen position. Every operation rounds once, in the order written here;
+// vertex-inl.h repeats it lane by lane.
+
+#include "rasterizer/internal/vertex_reference.h"
+
+#include <cmath>
+
+#include "rasterizer/fixed.h"
+
+namespace still::internal {
+
+namespace {
+
+float row(const float m[4], float x, float y, float z) {
+    return (m[0] * x + m[1] * y) + (m[2] * z + m[3]);
+}
+
+bool finite(float v) {
+    return v - v == 0.0f;
+}
+
+}  // namespace
+
+ClipVertex transformVertex(const MatrixF& clip, float x, float y, float z) {
+    return {row(clip.m[0], x, y, z), row(clip.m[1], x, y, z), row(clip.m[2], x, y, z),
+            row(clip.m[3], x, y, z)};
+}
+
+ScreenVertex projectVertex(const VertexJob& job, const ClipVertex& v) {
+    ScreenVertex out{};
+    if (!(finite(v.x) && finite(v.y) && finite(v.z) && finite(v.w))) {
+        out.outcode = kOutInvalid;
+        return out;
+    }
+    const float fx = job.frustum_x * v.w;
+    const float fy = job.frustum_y * v.w;
+    const bool near_ok = v.z <= v.w && v.w > 1e-20f;
+    uint8_t code = near_ok ? 0 : kOutNear;
+    code |= v.x < -fx ? kOutLeft : 0;
+    code |= v.x > fx ? kOutRight : 0;
+    code |= v.y > fy ? kOutTop : 0;
+    code |= v.y < -fy ? kOutBottom : 0;
+    code |= v.z < 0.0f ? kOutFar : 0;
+    if (near_ok) {
+        const float r = 1.0f / v.w;
+        const float sx = (v.x * r) * job.scale_x_fx8;
+        const float sy = (v.y * r) * job.scale_y_fx8;
+        if (std::fabs(sx) <= job.guard_fx8 && std::fabs(sy) <= job.guard_fx8) {
+            out.x_fx8 = roundToInt(sx) + job.centre_x_fx8;
+            out.y_fx8 = roundToInt(sy) + job.centre_y_fx8;
+            out.z = v.z * r;
+            out.inv_w = r;
+        } else {
+            code |= kOutGuard;
+        }
+    }
+    out.outcode = code;
+    return out;
+}
+
+}  // namespace still::internal
