@@ -80,13 +80,15 @@ void addMaterials(TestScene& scene, Random& random) {
 }
 
 TestVertex randomVertex(const glm::dvec3& centre, double size, Random& random) {
-    const glm::dvec3 p = centre + size * glm::dvec3(random.real(-1, 1), random.real(-1, 1),
-                                                    random.real(-1, 1));
+    const glm::dvec3 p =
+        centre + size * glm::dvec3(random.real(-1, 1), random.real(-1, 1), random.real(-1, 1));
     const glm::dvec3 n = glm::normalize(
         glm::dvec3(random.real(-0.5, 0.5), random.real(-0.5, 0.5), random.real(0.2, 1)));
-    return {float(p.x), float(p.y), float(p.z),
-            {float(n.x), float(n.y), float(n.z), float(random.real(-3, 3)),
-             float(random.real(-3, 3))}};
+    return {
+        float(p.x),
+        float(p.y),
+        float(p.z),
+        {float(n.x), float(n.y), float(n.z), float(random.real(-3, 3)), float(random.real(-3, 3))}};
 }
 
 void addTangents(Mesh& mesh, Random& random) {

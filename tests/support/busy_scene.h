@@ -1,6 +1,6 @@
 #pragma once
-// Random pictures that use everything at once: all material kinds, textures with mip levels, lights,
-// moving objects, a moving camera, triangles of every size, clipped ones.
+// Random pictures that use everything at once: all material kinds, textures with mip levels,
+// lights, moving objects, a moving camera, triangles of every size, clipped ones.
 
 #include "tests/support/test_scene.h"
 

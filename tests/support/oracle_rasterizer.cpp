@@ -144,8 +144,7 @@ double Frame::depthAt(const Triangle& triangle, int px, int py) const {
             const double area = double(edge(p[0], p[k - 1], p[k].x_fx8, p[k].y_fx8));
             const double b1 = double(edge(p[k], p[0], x, y)) / area;
             const double b2 = double(edge(p[0], p[k - 1], x, y)) / area;
-            return p[0].depth + b1 * (p[k - 1].depth - p[0].depth) +
-                   b2 * (p[k].depth - p[0].depth);
+            return p[0].depth + b1 * (p[k - 1].depth - p[0].depth) + b2 * (p[k].depth - p[0].depth);
         }
     }
     return 0;
@@ -212,8 +211,7 @@ bool Frame::pointAt(const Triangle& t, double x_px, double y_px, Point& point) c
     }
     const glm::dmat3 linear(toMatrix(t.instance->transform));
     point.normal = glm::normalize(glm::transpose(glm::inverse(linear)) * normal);
-    const glm::dmat4 before =
-        view_.view_projection_before * toMatrix(t.instance->transform_before);
+    const glm::dmat4 before = view_.view_projection_before * toMatrix(t.instance->transform_before);
     point.clip_before = before * glm::dvec4(position, 1);
     point.clip_before.z = 0.5 * (point.clip_before.w - point.clip_before.z);
     return true;

@@ -3,7 +3,9 @@
 namespace still::test {
 namespace {
 
-std::string text(uint32_t v) { return std::to_string(v); }
+std::string text(uint32_t v) {
+    return std::to_string(v);
+}
 std::string text(Motion v) {
     return "(" + std::to_string(v.x_fx8) + ", " + std::to_string(v.y_fx8) + ")";
 }

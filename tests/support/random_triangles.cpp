@@ -51,10 +51,18 @@ Corners onSamples(const FrameView& view, Random& random) {
 Corners degenerate(const FrameView& view, Random& random) {
     Corners c = onSamples(view, random);
     switch (random.integer(0, 3)) {
-        case 0: c[2] = c[1]; break;
-        case 1: c[2] = c[1] = c[0]; break;
-        case 2: c[2] = 2.0 * c[1] - c[0]; break;
-        default: c[2] = c[1] + glm::dvec2(1 / 256.0, 0); break;
+        case 0:
+            c[2] = c[1];
+            break;
+        case 1:
+            c[2] = c[1] = c[0];
+            break;
+        case 2:
+            c[2] = 2.0 * c[1] - c[0];
+            break;
+        default:
+            c[2] = c[1] + glm::dvec2(1 / 256.0, 0);
+            break;
     }
     return c;
 }
@@ -71,15 +79,24 @@ Corners beyondGuard(const FrameView& view, glm::dvec2 side, Random& random) {
 
 Corners flatCorners(const FrameView& view, FlatKind kind, Random& random) {
     switch (kind) {
-        case FlatKind::sliver: return sliver(view, random);
-        case FlatKind::sub_pixel: return subPixel(view, random);
-        case FlatKind::on_samples: return onSamples(view, random);
-        case FlatKind::degenerate: return degenerate(view, random);
-        case FlatKind::guard_left: return beyondGuard(view, {-1, 0}, random);
-        case FlatKind::guard_right: return beyondGuard(view, {1, 0}, random);
-        case FlatKind::guard_top: return beyondGuard(view, {0, -1}, random);
-        case FlatKind::guard_bottom: return beyondGuard(view, {0, 1}, random);
-        default: break;
+        case FlatKind::sliver:
+            return sliver(view, random);
+        case FlatKind::sub_pixel:
+            return subPixel(view, random);
+        case FlatKind::on_samples:
+            return onSamples(view, random);
+        case FlatKind::degenerate:
+            return degenerate(view, random);
+        case FlatKind::guard_left:
+            return beyondGuard(view, {-1, 0}, random);
+        case FlatKind::guard_right:
+            return beyondGuard(view, {1, 0}, random);
+        case FlatKind::guard_top:
+            return beyondGuard(view, {0, -1}, random);
+        case FlatKind::guard_bottom:
+            return beyondGuard(view, {0, 1}, random);
+        default:
+            break;
     }
     Corners c;
     for (glm::dvec2& p : c) {
@@ -92,10 +109,14 @@ Corners flatCorners(const FrameView& view, FlatKind kind, Random& random) {
 
 double deepZ(DeepKind kind, Random& random) {
     switch (kind) {
-        case DeepKind::in_front: return -std::exp2(random.real(-3, 8));
-        case DeepKind::near: return random.real(-0.4, 0.1);
-        case DeepKind::across: return random.real(-60, 40);
-        default: return random.real(0.01, 50);
+        case DeepKind::in_front:
+            return -std::exp2(random.real(-3, 8));
+        case DeepKind::near:
+            return random.real(-0.4, 0.1);
+        case DeepKind::across:
+            return random.real(-60, 40);
+        default:
+            return random.real(0.01, 50);
     }
 }
 

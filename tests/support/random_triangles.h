@@ -20,10 +20,10 @@ enum class FlatKind {
     guard_top,
     guard_bottom,
 };
-inline constexpr std::array kFlatKinds{FlatKind::ordinary,    FlatKind::sliver,     FlatKind::sub_pixel,
-                                FlatKind::huge,        FlatKind::on_samples, FlatKind::degenerate,
-                                FlatKind::guard_left,  FlatKind::guard_right, FlatKind::guard_top,
-                                FlatKind::guard_bottom};
+inline constexpr std::array kFlatKinds{
+    FlatKind::ordinary,   FlatKind::sliver,      FlatKind::sub_pixel,  FlatKind::huge,
+    FlatKind::on_samples, FlatKind::degenerate,  FlatKind::guard_left, FlatKind::guard_right,
+    FlatKind::guard_top,  FlatKind::guard_bottom};
 
 /// In space: for deepView().
 enum class DeepKind {
@@ -33,7 +33,7 @@ enum class DeepKind {
     behind,    ///< nothing is visible
 };
 inline constexpr std::array kDeepKinds{DeepKind::in_front, DeepKind::near, DeepKind::across,
-                                DeepKind::behind};
+                                       DeepKind::behind};
 
 /// Width × height with the identity as projection, and a random jitter.
 FrameView flatView(int width, int height, Random& random);

@@ -90,9 +90,9 @@ void compareMotion(const oracle::Attributes& a, const GBuffer& fast, int x, int 
         const auto steps = [](double depth) {
             return double(logDepth16(std::bit_cast<uint32_t>(float(std::max(depth, 0.0)))));
         };
-        worst.depth_before = std::max(
-            worst.depth_before,
-            excess({steps(a.depth_before.min), steps(a.depth_before.max)}, fast.depth_before.at(x, y)));
+        worst.depth_before = std::max(worst.depth_before,
+                                      excess({steps(a.depth_before.min), steps(a.depth_before.max)},
+                                             fast.depth_before.at(x, y)));
     }
 }
 
@@ -110,8 +110,7 @@ void comparePixel(const oracle::Frame& frame, const GBuffer& fast, int x, int y,
     ++worst.pixels;
     const double depth = std::bit_cast<float>(fast.depth.at(x, y));
     if (!triangle.clipped) {  // a clipped triangle's plane depends on how it is clipped
-        worst.depth =
-            std::max(worst.depth, std::abs(depth - truth.depth) / largestDepth(triangle));
+        worst.depth = std::max(worst.depth, std::abs(depth - truth.depth) / largestDepth(triangle));
     }
     const oracle::Attributes a = frame.attributes(triangle, x, y, kSnapPx);
     if (!a.bounded) {
@@ -121,9 +120,9 @@ void comparePixel(const oracle::Frame& frame, const GBuffer& fast, int x, int y,
     worst.normal = std::max(worst.normal, normalExcess(a, fast.normal.at(x, y)));
     compareMotion(a, fast, x, y, worst);
     if (textured) {
-        worst.texcoord = std::max({worst.texcoord,
-                                   excess(a.u, fast.red.at(x, y) / double(kColourOne)),
-                                   excess(a.v, fast.green.at(x, y) / double(kColourOne))});
+        worst.texcoord =
+            std::max({worst.texcoord, excess(a.u, fast.red.at(x, y) / double(kColourOne)),
+                      excess(a.v, fast.green.at(x, y) / double(kColourOne))});
     }
 }
 
@@ -179,8 +178,8 @@ void texture(TestScene& scene) {
 }  // namespace
 
 TEST_CASE("attributes: triangles in the plane agree with the oracle", "[attributes]") {
-    const FlatKind kind = GENERATE(FlatKind::ordinary, FlatKind::sliver, FlatKind::sub_pixel,
-                                   FlatKind::on_samples);
+    const FlatKind kind =
+        GENERATE(FlatKind::ordinary, FlatKind::sliver, FlatKind::sub_pixel, FlatKind::on_samples);
     Random random(500 + uint64_t(kind));
     Worst worst;
     for (int round = 0; round < 25; ++round) {
@@ -225,7 +224,9 @@ TEST_CASE("attributes: texture coordinates are perspective-correct", "[attribute
             const double depth = random.real(1, 4);
             const double x = (k == 1 ? 0.9 : -0.9) + random.real(-0.3, 0.3);
             const double y = (k == 2 ? 0.9 : -0.9) + random.real(-0.3, 0.3);
-            v[k] = {float(x * depth / 1.5), float(y * depth / 1.5), float(-depth),
+            v[k] = {float(x * depth / 1.5),
+                    float(y * depth / 1.5),
+                    float(-depth),
                     {0, 0, 1, float(random.real(0.2, 0.8)), float(random.real(0.2, 0.8))}};
         }
         scene.addTriangle(v[0], v[1], v[2]);

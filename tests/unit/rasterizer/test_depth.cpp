@@ -70,8 +70,7 @@ TEST_CASE("depth: 1 at the near plane, about near / distance beyond, 0 where not
         GBuffer out;
         draw(scene.list(), view, out);
         const double expected = kNear / distance * (kFar - distance) / (kFar - kNear);
-        CHECK(double(std::bit_cast<float>(out.depth.at(80, 50))) ==
-              Approx(expected).epsilon(1e-5));
+        CHECK(double(std::bit_cast<float>(out.depth.at(80, 50))) == Approx(expected).epsilon(1e-5));
     }
     TestScene empty;
     GBuffer out;

@@ -33,9 +33,9 @@ void addFullTriangle(TestScene& scene, const FrameView& view) {
 }  // namespace
 
 TEST_CASE("limits: vertices that are not finite drop their triangles only", "[limits]") {
-    const float bad = GENERATE(std::numeric_limits<float>::quiet_NaN(),
-                               std::numeric_limits<float>::infinity(),
-                               -std::numeric_limits<float>::infinity(), 3e38f, -3e38f);
+    const float bad =
+        GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                 -std::numeric_limits<float>::infinity(), 3e38f, -3e38f);
     Random random(1);
     for (int component = 0; component < 3; ++component) {
         const FrameView view = deepView(90, 70, random);

@@ -36,11 +36,13 @@ TestScene floorAndCard() {
     for (int row = 0; row < 6; ++row) {
         for (int column = 0; column < 6; ++column) {
             const float x = float(column) * 2 - 6, z = -float(row) * 2 - 1;
-            scene.addQuad({TestVertex{x, -1, z}, {x + 2, -1, z}, {x + 2, -1, z - 2}, {x, -1, z - 2}});
+            scene.addQuad(
+                {TestVertex{x, -1, z}, {x + 2, -1, z}, {x + 2, -1, z - 2}, {x, -1, z - 2}});
         }
     }
     scene.addMesh();
-    scene.addQuad({TestVertex{-0.7f, -0.5f, 0}, {0.7f, -0.5f, 0.3f}, {0.7f, 0.6f, 0}, {-0.7f, 0.6f, -0.3f}});
+    scene.addQuad(
+        {TestVertex{-0.7f, -0.5f, 0}, {0.7f, -0.5f, 0.3f}, {0.7f, 0.6f, 0}, {-0.7f, 0.6f, -0.3f}});
     return scene;
 }
 
@@ -99,8 +101,7 @@ Worst follow(const TestScene& scene, const DrawList& list, const FrameView& view
             worst.wrong_flags += ((id & kMovedBit) != 0) != instance.moved ? 1 : 0;
             worst.moved_pixels += instance.moved ? 1 : 0;
             const glm::dvec2 p = samplePosition(view, x, y);
-            const glm::dvec4 world =
-                unproject(view, p, std::bit_cast<float>(out.depth.at(x, y)));
+            const glm::dvec4 world = unproject(view, p, std::bit_cast<float>(out.depth.at(x, y)));
             const glm::dvec4 world_before = toMatrix(instance.transform_before) *
                                             glm::inverse(toMatrix(instance.transform)) * world;
             const Seen before = project(view, view.view_projection_before, world_before);
@@ -189,9 +190,9 @@ TEST_CASE("motion: the background moves with the turning camera", "[motion]") {
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
             const glm::dvec2 p = samplePosition(view, x, y);
-            const glm::dvec4 far_away = glm::inverse(view.view_projection) *
-                                        glm::dvec4(p.x / view.width * 2 - 1,
-                                                   1 - p.y / view.height * 2, 1, 1);
+            const glm::dvec4 far_away =
+                glm::inverse(view.view_projection) *
+                glm::dvec4(p.x / view.width * 2 - 1, 1 - p.y / view.height * 2, 1, 1);
             const Seen before = project(view, view.view_projection_before, far_away);
             worst_fx8 = std::max(
                 worst_fx8, std::abs((before.position.x - p.x) * 256 - out.motion.at(x, y).x_fx8));

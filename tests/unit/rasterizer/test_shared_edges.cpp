@@ -42,7 +42,8 @@ void addQuad(Net& net, const std::array<uint32_t, 4>& q, Random& random) {
     }
 }
 
-/// A grid with shaken inner points and random diagonals that reaches `margin_px` beyond the picture.
+/// A grid with shaken inner points and random diagonals that reaches `margin_px` beyond the
+/// picture.
 Net shakenGrid(const FrameView& view, int cells, double margin_px, Random& random) {
     Net net;
     for (int row = 0; row <= cells; ++row) {

@@ -104,8 +104,8 @@ TEST_CASE("texture: levels grow with distance on a floor", "[texture]") {
     TestScene scene;
     scene.textures = {numberedLevels(256)};
     scene.materials = {textured()};
-    std::array<TestVertex, 4> c{TestVertex{-90, -1, -0.5f}, {90, -1, -0.5f}, {90, -1, -300},
-                                {-90, -1, -300}};
+    std::array<TestVertex, 4> c{
+        TestVertex{-90, -1, -0.5f}, {90, -1, -0.5f}, {90, -1, -300}, {-90, -1, -300}};
     for (TestVertex& v : c) {
         v.attributes = {0, 1, 0, v.x, v.z};
     }
@@ -116,7 +116,8 @@ TEST_CASE("texture: levels grow with distance on a floor", "[texture]") {
         CAPTURE(y);
         CHECK(levelAt(out, 64, y) >= levelAt(out, 64, y + 1) - 0.01);
     }
-    // Row y sees the floor at distance d = 1.5 · 64 / (y + ½ − 64); along it a pixel is d² / 96 long.
+    // Row y sees the floor at distance d = 1.5 · 64 / (y + ½ − 64); along it a pixel is d² / 96
+    // long.
     const double d = 96.0 / (100.5 - 64);
     CHECK(levelAt(out, 64, 100) == Approx(std::log2(d * d / 96 * 256)).margin(0.1));
 }

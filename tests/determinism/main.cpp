@@ -1,0 +1,168 @@
+// determinism [--update] [--few] [--table FILE]
+// Renders the built-in scenes with every SIMD target, scheduler and thread count and compares the
+// hashes of all stages with the committed table. Exit code: 0 equal, 1 some pixels differ, 2 the
+// table or a scene cannot be had.
+
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "demos/scenes/builtin.h"
+#include "tests/determinism/hash_table.h"
+
+namespace still::determinism {
+namespace {
+
+/// Odd sizes, so that the last tiles and vectors are cut.
+struct Case {
+    const char* scene;
+    int width, height, frames;
+};
+constexpr Case kCases[] = {
+    {"triangle", 65, 47, 4}, {"cubes", 321, 179, 6}, {"checker", 321, 179, 4},
+    {"fence", 321, 179, 4},  {"glass", 257, 131, 5}, {"lights", 257, 131, 4},
+    {"zoo", 321, 179, 6},    {"pan", 321, 179, 5},   {"courtyard", 321, 179, 4},
+};
+
+struct Configuration {
+    SimdTarget simd = SimdTarget::scalar;
+    Schedule schedule = Schedule::serial;
+    int threads = 1;
+    Shading shading = Shading::deferred;
+
+    std::string text() const {
+        const char* kSchedules[] = {"pooled", "serial", "shuffled"};
+        return std::string(name(simd)) + ", " + kSchedules[int(schedule)] + ", " +
+               std::to_string(threads) + " threads, " +
+               (shading == Shading::forward ? "forward" : "deferred");
+    }
+};
+
+/// All combinations, or of each kind one: enough to compare compilers.
+std::vector<Configuration> configurations(bool few) {
+    if (few) {
+        return {{SimdTarget::scalar, Schedule::serial, 1},
+                {bestSimdTarget(), Schedule::pooled, 2},
+                {bestSimdTarget(), Schedule::shuffled, 1, Shading::forward}};
+    }
+    std::vector<Configuration> all;
+    for (SimdTarget simd : availableSimdTargets()) {
+        all.push_back({simd, Schedule::serial, 1});
+        all.push_back({simd, Schedule::serial, 1, Shading::forward});
+        all.push_back({simd, Schedule::shuffled, 1});
+        for (int threads : {1, 2, 3, 8}) {
+            all.push_back({simd, Schedule::pooled, threads});
+        }
+    }
+    return all;
+}
+
+SceneRecord render(const Case& c, const Scene& scene, const Configuration& configuration) {
+    Workers workers(configuration.threads, configuration.schedule, 42);
+    FrameSettings settings;
+    settings.width = c.width;
+    settings.height = c.height;
+    settings.simd = configuration.simd;
+    settings.shading = configuration.shading;
+    settings.planes = {.normal = true, .motion = true};
+    FrameLoop loop(scene, settings, workers);
+    SceneRecord record{c.scene, {}};
+    for (int frame = 0; frame < c.frames; ++frame) {
+        record.frames.push_back(hashOf(loop.render(frame)));
+    }
+    return record;
+}
+
+/// Prints the first difference and returns whether there is one.
+bool differs(const Case& c, const SceneRecord& expected, const SceneRecord& found,
+             const Configuration& configuration) {
+    const int tiles_x = (c.width + kTileSize - 1) / kTileSize;
+    for (size_t frame = 0; frame < found.frames.size(); ++frame) {
+        const std::string text =
+            firstDifference(expected.frames[frame], found.frames[frame], tiles_x);
+        if (!text.empty()) {
+            std::fprintf(stderr, "%s, frame %zu, %s\n    with %s\n", c.scene, frame, text.c_str(),
+                         configuration.text().c_str());
+            return true;
+        }
+    }
+    return false;
+}
+
+struct Options {
+    bool update = false, few = false;
+    std::string table = STILL_SOURCE_DIR "/tests/determinism/hashes.txt";
+};
+
+int update(const Options& options) {
+    Table table;
+    for (const Case& c : kCases) {
+        const Result<Scene> scene = builtinScene(c.scene);
+        if (!scene) {
+            std::fprintf(stderr, "%s\n", scene.error().message.c_str());
+            return 2;
+        }
+        table.push_back(render(c, *scene, {}));
+    }
+    if (const Result<void> written = writeTable(options.table, table); !written) {
+        std::fprintf(stderr, "%s\n", written.error().message.c_str());
+        return 2;
+    }
+    std::printf("wrote %s\n", options.table.c_str());
+    return 0;
+}
+
+const SceneRecord* find(const Table& table, const Case& c) {
+    for (const SceneRecord& record : table) {
+        if (record.scene == c.scene && record.frames.size() == size_t(c.frames)) {
+            return &record;
+        }
+    }
+    return nullptr;
+}
+
+int check(const Options& options) {
+    const Result<Table> table = readTable(options.table);
+    if (!table) {
+        std::fprintf(stderr, "%s\n", table.error().message.c_str());
+        return 2;
+    }
+    int runs = 0, failures = 0;
+    for (const Case& c : kCases) {
+        const Result<Scene> scene = builtinScene(c.scene);
+        const SceneRecord* expected = find(*table, c);
+        if (!scene || expected == nullptr) {
+            std::fprintf(stderr, "%s: no such scene or not in the table, expected %d frames\n",
+                         c.scene, c.frames);
+            return 2;
+        }
+        for (const Configuration& configuration : configurations(options.few)) {
+            const SceneRecord found = render(c, *scene, configuration);
+            failures += differs(c, *expected, found, configuration) ? 1 : 0;
+            ++runs;
+        }
+    }
+    std::printf("%d of %d runs equal the table\n", runs - failures, runs);
+    return failures == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace still::determinism
+
+int main(int argc, char** argv) {
+    still::determinism::Options options;
+    for (int k = 1; k < argc; ++k) {
+        if (std::strcmp(argv[k], "--update") == 0) {
+            options.update = true;
+        } else if (std::strcmp(argv[k], "--few") == 0) {
+            options.few = true;
+        } else if (std::strcmp(argv[k], "--table") == 0 && k + 1 < argc) {
+            options.table = argv[++k];
+        } else {
+            std::fprintf(stderr, "usage: determinism [--update] [--few] [--table FILE]\n");
+            return 2;
+        }
+    }
+    return options.update ? still::determinism::update(options)
+                          : still::determinism::check(options);
+}
