@@ -1,0 +1,215 @@
+#include "engine/internal/image_load.h"
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "engine/det_math.h"
+#include "engine/internal/obj_text.h"
+
+// The decoder's own limits and its scalar code: what a file decodes to must not depend on the CPU.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_NO_SIMD
+#define STBI_MAX_DIMENSIONS 16384
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#include <stb/stb_image.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace still {
+
+static_assert(kMaxImageSize == STBI_MAX_DIMENSIONS);
+
+namespace {
+
+/// Feeds the decoder and notices when it asks for more than there is: for most formats it takes
+/// missing bytes for zeros and reports success.
+class ByteSource {
+  public:
+    explicit ByteSource(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+    bool overrun() const { return overrun_; }
+
+    static int read(void* user, char* data, int size) {
+        ByteSource& source = *static_cast<ByteSource*>(user);
+        const size_t left = source.bytes_.size() - source.position_;
+        const size_t taken = std::min(left, size_t(std::max(size, 0)));
+        // The decoder fills its buffer 128 bytes at a time whatever it needs; only then is a short
+        // answer no sign of a truncated file, as long as it is not empty.
+        constexpr int kBufferBytes = 128;
+        source.overrun_ |= taken == 0 || (size != kBufferBytes && taken < size_t(size));
+        std::memcpy(data, source.bytes_.data() + source.position_, taken);
+        source.position_ += taken;
+        return int(taken);
+    }
+    static void skip(void* user, int count) {
+        ByteSource& source = *static_cast<ByteSource*>(user);
+        const int64_t wanted = int64_t(source.position_) + count;
+        source.position_ = size_t(std::clamp<int64_t>(wanted, 0, int64_t(source.bytes_.size())));
+    }
+    static int atEnd(void* user) {
+        const ByteSource& source = *static_cast<ByteSource*>(user);
+        return source.position_ == source.bytes_.size();
+    }
+    static constexpr stbi_io_callbacks callbacks() { return {read, skip, atEnd}; }
+
+  private:
+    std::span<const uint8_t> bytes_;
+    size_t position_ = 0;
+    bool overrun_ = false;
+};
+
+struct FreePixels {
+    void operator()(void* pixels) const { stbi_image_free(pixels); }
+};
+
+tl::unexpected<Error> refuse(const std::string& name, const std::string& why) {
+    return fail(name + ": not a readable image: " + why);
+}
+
+tl::unexpected<Error> refuseAsDecoder(const std::string& name) {
+    const char* reason = stbi_failure_reason();
+    return refuse(name, reason != nullptr ? reason : "unknown reason");
+}
+
+/// The decoder leaves palette entries that a BMP does not have uninitialised, although pixels may
+/// use them, and loses the last four of OS/2 files (12-byte header, 3 bytes an entry). So the
+/// palette is filled up with black ones. Empty when there is nothing to do.
+std::vector<uint8_t> withFullBmpPalette(std::span<const uint8_t> bytes) {
+    constexpr size_t kFileHeader = 14, kEntries = 256;
+    if (bytes.size() < 54 || bytes[0] != 'B' || bytes[1] != 'M') {
+        return {};
+    }
+    const auto word = [&](size_t at) {
+        return size_t(bytes[at]) | size_t(bytes[at + 1]) << 8 | size_t(bytes[at + 2]) << 16 |
+               size_t(bytes[at + 3]) << 24;
+    };
+    const bool old = word(14) == 12;
+    const size_t pixels = word(10), palette = kFileHeader + word(14);
+    const size_t full_size = old ? 3 * (kEntries + 4) : 4 * kEntries;
+    if (bytes[old ? 24 : 28] > 8 || pixels <= palette || pixels >= palette + full_size ||
+        pixels > bytes.size()) {
+        return {};
+    }
+    std::vector<uint8_t> full(bytes.begin(), bytes.end());
+    full.insert(full.begin() + ptrdiff_t(pixels), palette + full_size - pixels, uint8_t{0});
+    for (size_t i = 0; i < 4; ++i) {
+        full[10 + i] = uint8_t((palette + full_size) >> (8 * i));
+    }
+    return full;
+}
+
+/// Linear light up to which the sRGB code is at most the index: decoded (code + 0.5) / 255.
+const std::array<double, 255>& srgbBorders() {
+    static const std::array<double, 255> borders = [] {
+        std::array<double, 255> b{};
+        for (int c = 0; c < 255; ++c) {
+            const double x = (c + 0.5) / 255.0;
+            b[size_t(c)] = x <= 0.04045 ? x / 12.92 : det::pow((x + 0.055) / 1.055, 2.4);
+        }
+        return b;
+    }();
+    return borders;
+}
+
+uint8_t encodeSrgb(float linear) {
+    if (!(linear > 0.0f)) {
+        return 0;
+    }
+    const std::array<double, 255>& borders = srgbBorders();
+    return uint8_t(std::upper_bound(borders.begin(), borders.end(), double(linear)) -
+                   borders.begin());
+}
+
+Result<Image<Rgba8>> decodeHdr(std::span<const uint8_t> bytes, const std::string& name) {
+    ByteSource source(bytes);
+    const stbi_io_callbacks io = ByteSource::callbacks();
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<float, FreePixels> pixels(
+        stbi_loadf_from_callbacks(&io, &source, &width, &height, &channels, 3));
+    if (!pixels) {
+        return refuseAsDecoder(name);
+    }
+    if (source.overrun()) {
+        return refuse(name, "truncated");
+    }
+    Image<Rgba8> image(width, height);
+    const float* p = pixels.get();
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x, p += 3) {
+            image.view().row(y)[x] = {encodeSrgb(p[0]), encodeSrgb(p[1]), encodeSrgb(p[2]), 255};
+        }
+    }
+    return image;
+}
+
+Result<Image<Rgba8>> decodeBytes(std::span<const uint8_t> bytes, const std::string& name) {
+    ByteSource source(bytes);
+    const stbi_io_callbacks io = ByteSource::callbacks();
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<stbi_uc, FreePixels> pixels(
+        stbi_load_from_callbacks(&io, &source, &width, &height, &channels, 4));
+    if (!pixels) {
+        return refuseAsDecoder(name);
+    }
+    if (source.overrun()) {
+        return refuse(name, "truncated");
+    }
+    static_assert(sizeof(Rgba8) == 4);
+    Image<Rgba8> image(width, height);
+    for (int y = 0; y < height; ++y) {
+        const stbi_uc* row = pixels.get() + size_t(y) * size_t(width) * 4;
+        std::memcpy(static_cast<void*>(image.view().row(y)), row, size_t(width) * 4);
+    }
+    return image;
+}
+
+}  // namespace
+
+Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::string& name) {
+    if (bytes.empty()) {
+        return refuse(name, "empty file");
+    }
+    if (bytes.size() > size_t(INT_MAX)) {
+        return refuse(name, "larger than 2 GiB");
+    }
+    int width = 0, height = 0, channels = 0;
+    const int length = int(bytes.size());
+    if (!stbi_info_from_memory(bytes.data(), length, &width, &height, &channels)) {
+        return refuseAsDecoder(name);
+    }
+    // The decoder reports the negative heights of top-down BMPs as they stand in the file.
+    const int64_t wide = std::abs(int64_t(width)), high = std::abs(int64_t(height));
+    if (wide < 1 || high < 1 || wide > kMaxImageSize || high > kMaxImageSize ||
+        wide * high > kMaxImagePixels) {
+        return refuse(name, std::to_string(wide) + " × " + std::to_string(high) +
+                                " pixels, expected 1 to " + std::to_string(kMaxImageSize) +
+                                " a side and at most " + std::to_string(kMaxImagePixels >> 20) +
+                                " Mpixel");
+    }
+    if (stbi_is_hdr_from_memory(bytes.data(), length)) {
+        return decodeHdr(bytes, name);
+    }
+    const std::vector<uint8_t> full = withFullBmpPalette(bytes);
+    return decodeBytes(full.empty() ? bytes : full, name);
+}
+
+Result<Image<Rgba8>> loadImage(const std::filesystem::path& file) {
+    const Result<std::string> bytes = readFile(file);
+    if (!bytes) {
+        return tl::make_unexpected(bytes.error());
+    }
+    return decodeImage({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()},
+                       shownPath(file));
+}
+
+}  // namespace still
