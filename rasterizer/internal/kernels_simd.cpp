@@ -16,10 +16,11 @@
 #include "rasterizer/internal/tile.h"
 #include "rasterizer/internal/triangle_setup.h"
 
-// clang-format off: in pipeline order, each rests on those before
+// In pipeline order: each rests on those before.
+// clang-format off
+#include "rasterizer/internal/vertex-inl.h"
 #include "rasterizer/internal/sampler-inl.h"
 #include "rasterizer/internal/shade-inl.h"
-#include "rasterizer/internal/vertex-inl.h"
 #include "rasterizer/internal/visibility-inl.h"
 // clang-format on
 
