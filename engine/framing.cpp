@@ -81,7 +81,7 @@ void frameScene(Scene& scene, glm::dvec3 direction, double aspect) {
     const double size = std::max(lengthOf(outline.max - outline.min), 1e-6);
     const double eye_z =
         std::min({-(outline.right + outline.left) / (2 * slope_x),
-                  -(outline.top + outline.bottom) / (2 * slope_y), outline.min.z - 0.05 * size});
+                  -(outline.top + outline.bottom) / (2 * slope_y), outline.min.z - 0.002 * size});
     const glm::dvec3 eye{(outline.right - outline.left) / 2, (outline.top - outline.bottom) / 2,
                          eye_z};
     const glm::dvec3 target{eye.x, eye.y, (outline.min.z + outline.max.z) / 2};
