@@ -17,9 +17,10 @@ constexpr double kC2 = (0.03 * 255) * (0.03 * 255);
 
 /// e^(−d² / (2 · 1.5²)) for d = −5 … 5, written out so that no library function decides its bits.
 constexpr std::array<double, kWindow> kGauss{
-    0.0038659201394728076, 0.028565500784550377, 0.1353352832366127, 0.41111229050718745,
-    0.8007374029168081,   1.0,                 0.8007374029168081, 0.41111229050718745,
-    0.1353352832366127,   0.028565500784550377, 0.0038659201394728076};
+    0.0038659201394728076, 0.028565500784550377, 0.1353352832366127,
+    0.41111229050718745,   0.8007374029168081,   1.0,
+    0.8007374029168081,    0.41111229050718745,  0.1353352832366127,
+    0.028565500784550377,  0.0038659201394728076};
 
 /// The taps along an axis of `size` pixels, their sum 1.
 struct Taps {
@@ -137,8 +138,7 @@ double ssim(ImageView<const Rgb8> a, ImageView<const Rgb8> b) {
         for (int x = 0; top >= 0 && x < across.positions; ++x) {
             Moments window;
             for (int i = 0; i < down.count; ++i) {
-                window.add(rows[size_t((top + i) % down.count)][size_t(x)],
-                           down.weight[size_t(i)]);
+                window.add(rows[size_t((top + i) % down.count)][size_t(x)], down.weight[size_t(i)]);
             }
             sum += similarity(window);
         }

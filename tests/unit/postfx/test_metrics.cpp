@@ -64,8 +64,8 @@ double plainSsim(ImageView<const Rgb8> a, ImageView<const Rgb8> b) {
             const double vb = bb / weights - mb * mb;
             const double cov = ab / weights - ma * mb;
             const double c1 = 6.5025, c2 = 58.5225;
-            total += (2 * ma * mb + c1) * (2 * cov + c2) /
-                     ((ma * ma + mb * mb + c1) * (va + vb + c2));
+            total +=
+                (2 * ma * mb + c1) * (2 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
         }
     }
     return total / windows;

@@ -1,0 +1,196 @@
+#include "demos/stillframe/job.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+#include <thread>
+
+#include "demos/scenes/builtin.h"
+#include "engine/jitter.h"
+#include "engine/load.h"
+
+namespace still::command {
+namespace {
+
+constexpr std::string_view kBuiltin = "builtin:";
+
+/// Puts the value of `from` into `to`.
+template <class T>
+Outcome<void> store(Outcome<T> from, T& to) {
+    return std::move(from).map([&](T value) { to = std::move(value); });
+}
+
+/// Options that exclude or need each other.
+Outcome<void> checkCombination(const Job& job) {
+    const RenderOptions& options = job.options;
+    const bool to_stdout = job.sink == SinkKind::standard_output;
+    if (job.sink == SinkKind::none && !options.hash && !options.json) {
+        return usageError("render: expected --output, --hash or --json");
+    }
+    if (to_stdout && (options.hash || options.json)) {
+        return usageError(
+            "--output -: the picture takes standard output, so neither --hash nor "
+            "--json can have it");
+    }
+    if (!job.dump.empty() && (to_stdout || job.sink == SinkKind::none)) {
+        return usageError("--dump: expected an --output file, whose name the planes' names follow");
+    }
+    const bool confidence = std::count(job.dump.begin(), job.dump.end(), DumpPlane::confidence) > 0;
+    if (confidence && job.settings.anti_aliasing != AntiAliasing::taa) {
+        return usageError("--dump: confidence exists with --anti-aliasing taa only");
+    }
+    if (!options.cameras.empty() && (!options.view.empty() || options.orbit_deg != 0)) {
+        return usageError("--cameras: excludes --view and --orbit");
+    }
+    return {};
+}
+
+/// The options' values, before any file is touched.
+Outcome<void> settleOptions(Job& job) {
+    const RenderOptions& options = job.options;
+    FrameSettings& settings = job.settings;
+    settings.shading = options.shading == "forward" ? Shading::forward : Shading::deferred;
+    settings.tone_map = options.tone_map == "reinhard" ? ToneMap::reinhard : ToneMap::none;
+    const int cores = std::max(1, int(std::thread::hardware_concurrency()));
+    job.threads = options.threads > 0 ? options.threads : cores;
+    AntiAliasingChoice choice;
+    return store(sinkKind(options.output), job.sink)
+        .and_then([&] { return store(parseDump(options.dump), job.dump); })
+        .and_then([&] { return store(parseSimd(options.simd), settings.simd); })
+        .and_then([&] { return store(parseAntiAliasing(options.anti_aliasing), choice); })
+        .map([&] {
+            settings.anti_aliasing = choice.mode;
+            settings.ssaa_samples = choice.ssaa_samples;
+        })
+        .and_then([&] { return checkCombination(job); });
+}
+
+void printWarnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+        std::fprintf(stderr, "stillframe: warning: %s\n", warning.c_str());
+    }
+}
+
+Outcome<Scene> openScene(const std::string& name) {
+    if (!name.starts_with(kBuiltin)) {
+        return fromResult(loadScene(name));
+    }
+    return builtinScene(name.substr(kBuiltin.size())).map_error([](const Error& error) {
+        return Failure{ExitCode::usage, error.message};
+    });
+}
+
+Outcome<void> readCameras(Job& job) {
+    if (job.options.cameras.empty()) {
+        return {};
+    }
+    return store(fromResult(loadCameraFile(job.options.cameras)), job.cameras).map([&] {
+        printWarnings(job.cameras.warnings);
+        job.settings.camera.file = &job.cameras;
+    });
+}
+
+Outcome<void> readFiles(Job& job) {
+    return store(openScene(job.options.scene), job.scene)
+        .map([&] { printWarnings(job.scene.warnings); })
+        .and_then([&] { return readCameras(job); });
+}
+
+/// The loader frames for 16:9 and leaves other shapes to us.
+void frameForAspect(Scene& scene, Size size) {
+    if (scene.automatic_camera) {
+        const glm::dvec3 direction =
+            scene.camera.eye.keys[0].value - scene.camera.target.keys[0].value;
+        frameScene(scene, direction, double(size.width) / size.height);
+    }
+}
+
+Outcome<int> findView(const Scene& scene, const std::string& name) {
+    if (name.empty()) {
+        return -1;
+    }
+    std::string known;
+    for (size_t i = 0; i < scene.views.size(); ++i) {
+        if (scene.views[i].name == name) {
+            return int(i);
+        }
+        known += (i == 0 ? "" : ", ") + scene.views[i].name;
+    }
+    return usageError("--view: " + name + ": the scene has " +
+                      (known.empty() ? "no views" : "the views " + known));
+}
+
+/// Size, number of frames and camera: typed ones before those of the camera file.
+Outcome<void> settleView(Job& job) {
+    const RenderOptions& options = job.options;
+    FrameSettings& settings = job.settings;
+    if (settings.camera.file != nullptr) {
+        settings.width = job.cameras.width;
+        settings.height = job.cameras.height;
+        job.frames = int(job.cameras.frames.size());
+    }
+    const Size size = options.resolution.value_or(Size{settings.width, settings.height});
+    settings.width = size.width;
+    settings.height = size.height;
+    job.frames = options.frames.value_or(job.frames);
+    frameForAspect(job.scene, size);
+    settings.camera.orbit_deg = options.orbit_deg;
+    settings.camera.orbit_frames = job.frames;
+    return store(findView(job.scene, options.view), settings.camera.view);
+}
+
+/// A single picture of something that stands still is finished before it is handed out.
+Outcome<void> settleSamples(Job& job) {
+    const bool finished = job.frames == 1 && job.settings.anti_aliasing == AntiAliasing::taa &&
+                          isStill(job.scene, job.settings.camera);
+    if (finished) {
+        job.settings.subframes = job.options.samples.value_or(int(kTaaPeriod));
+    } else if (job.options.samples) {
+        return usageError(
+            "--samples: is for one frame with --anti-aliasing taa in which nothing "
+            "moves");
+    }
+    return {};
+}
+
+/// Planes that TAA does not ask for by itself.
+void settlePlanes(Job& job) {
+    job.settings.planes = {.normal = job.options.hash, .motion = job.options.hash};
+    for (DumpPlane plane : job.dump) {
+        job.settings.planes.normal |= plane == DumpPlane::normal;
+        job.settings.planes.motion |= plane == DumpPlane::motion;
+    }
+}
+
+Outcome<void> settleOutput(Job& job) {
+    if (job.sink == SinkKind::none) {
+        return {};
+    }
+    if (job.sink == SinkKind::standard_output) {
+        return job.frames == 1 ? Outcome<void>() : usageError("--output -: takes one frame only");
+    }
+    if (auto stored = store(NamePattern::parse(job.options.output), job.name); !stored) {
+        return stored;
+    }
+    if (job.sink != SinkKind::png && job.name.numbered()) {
+        return usageError("--output: " + job.options.output +
+                          ": all frames go into one file, so its name takes no number");
+    }
+    if (job.sink == SinkKind::png && job.frames > 1) {
+        job.name = job.name.withNumber();
+    }
+    return {};
+}
+
+}  // namespace
+
+Outcome<void> prepare(Job& job) {
+    return settleOptions(job)
+        .and_then([&] { return readFiles(job); })
+        .and_then([&] { return settleView(job); })
+        .and_then([&] { return settleSamples(job); })
+        .and_then([&] { return settleOutput(job); })
+        .map([&] { settlePlanes(job); });
+}
+
+}  // namespace still::command

@@ -1,0 +1,99 @@
+#include "demos/stillframe/name_pattern.h"
+
+#include <algorithm>
+#include <charconv>
+#include <regex>
+#include <system_error>
+
+namespace still::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string padded(int number, int digits) {
+    std::string text = std::to_string(number);
+    text.insert(0, size_t(std::max(0, digits - int(text.size()))), '0');
+    return text;
+}
+
+}  // namespace
+
+Outcome<NamePattern> NamePattern::parse(const std::string& text) {
+    static const std::regex kPlace(R"(\{frame(:(\d))?\}|%(0(\d))?d)");
+    const fs::path path(text);
+    const std::string file_name = path.filename().string();
+    if (file_name.empty()) {
+        return usageError(text + ": expected a file name");
+    }
+    if (std::regex_search(path.parent_path().string(), kPlace)) {
+        return usageError(text + ": the frame number can only stand in the file name");
+    }
+    NamePattern pattern;
+    pattern.folder_ = path.parent_path();
+    pattern.before_ = file_name;
+    std::smatch match;
+    if (std::regex_search(file_name, match, kPlace)) {
+        const std::string digits = match[2].str() + match[4].str();
+        pattern.numbered_ = true;
+        pattern.digits_ = digits.empty() ? 1 : digits[0] - '0';
+        pattern.before_ = match.prefix();
+        pattern.after_ = match.suffix();
+        if (std::regex_search(pattern.after_, kPlace)) {
+            return usageError(text + ": expected one place for the frame number, found two");
+        }
+    }
+    return pattern;
+}
+
+NamePattern NamePattern::withNumber() const {
+    if (numbered_) {
+        return *this;
+    }
+    NamePattern pattern = *this;
+    const fs::path name(before_);
+    pattern.before_ = name.stem().string() + ".";
+    pattern.after_ = name.extension().string();
+    pattern.digits_ = 4;
+    pattern.numbered_ = true;
+    return pattern;
+}
+
+fs::path NamePattern::at(int frame) const {
+    return folder_ / (numbered_ ? before_ + padded(frame, digits_) + after_ : before_);
+}
+
+fs::path NamePattern::planeAt(int frame, const std::string& plane) const {
+    fs::path path = at(frame);
+    return path.replace_extension(plane + ".png");
+}
+
+std::vector<int> NamePattern::existing() const {
+    std::vector<int> frames;
+    std::error_code error;
+    fs::directory_iterator entry(folder_.empty() ? fs::path(".") : folder_, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        if (const auto frame = numberOf(entry->path().filename().string())) {
+            frames.push_back(*frame);
+        }
+    }
+    std::sort(frames.begin(), frames.end());
+    return frames;
+}
+
+std::optional<int> NamePattern::numberOf(const std::string& file_name) const {
+    const size_t fixed = before_.size() + after_.size();
+    if (!numbered_ || file_name.size() <= fixed || !file_name.starts_with(before_) ||
+        !file_name.ends_with(after_)) {
+        return std::nullopt;
+    }
+    const std::string digits = file_name.substr(before_.size(), file_name.size() - fixed);
+    int frame = 0;
+    const char* end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, frame);
+    if (error != std::errc() || stop != end || frame < 0 || padded(frame, digits_) != digits) {
+        return std::nullopt;
+    }
+    return frame;
+}
+
+}  // namespace still::command

@@ -1,0 +1,64 @@
+#pragma once
+// The command line as it was typed, and the meaning of its values.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/stillframe/outcome.h"
+#include "engine/frame_loop.h"
+
+namespace still::command {
+
+struct Size {
+    int width = 0, height = 0;
+};
+
+struct RenderOptions {
+    std::string scene;               ///< FILE.obj, FILE.json or builtin:NAME
+    std::string output;              ///< empty: no picture is written
+    std::optional<Size> resolution;  ///< empty: 1280x720, or the camera file's
+    std::optional<int> frames;       ///< empty: 1, or the camera file's count
+    int start = 0;
+    std::string cameras;
+    std::string view;
+    double orbit_deg = 0;
+    std::string anti_aliasing = "taa";
+    std::optional<int> samples;  ///< of a finished picture; empty: 64
+    std::string dump;            ///< comma-separated planes
+    int threads = 0;             ///< 0: all cores
+    std::string simd;            ///< empty: the best
+    std::string shading = "deferred";
+    std::string tone_map = "none";
+    int fps = 30;
+    bool hash = false;
+    bool json = false;
+};
+
+struct CompareOptions {
+    std::string a, b;
+    std::string diff;
+    bool exact = false;
+    bool json = false;
+};
+
+/// "1280x720" or "1280,720", each side 1 … kMaxTargetSize.
+Outcome<Size> parseResolution(const std::string& text);
+
+struct AntiAliasingChoice {
+    AntiAliasing mode = AntiAliasing::taa;
+    int ssaa_samples = 1;
+};
+/// "none", "taa" or "ssaa:N" with N = 1 … 65536.
+Outcome<AntiAliasingChoice> parseAntiAliasing(const std::string& text);
+
+/// Planes that --dump can write.
+enum class DumpPlane { color, depth, normal, motion, id, confidence };
+std::string dumpName(DumpPlane plane);
+/// "depth,normal"; empty text is an empty list.
+Outcome<std::vector<DumpPlane>> parseDump(const std::string& text);
+
+/// One of availableSimdTargets(); empty text is the best one.
+Outcome<SimdTarget> parseSimd(const std::string& text);
+
+}  // namespace still::command

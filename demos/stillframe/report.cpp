@@ -1,0 +1,190 @@
+#include "demos/stillframe/report.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace still::command {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Nearest rank for the 95th percentile; the median of an even number is the mean of the middle
+/// two.
+template <class Time>
+Json statistics(const std::vector<RenderReport::Frame>& frames, Time&& time_of) {
+    std::vector<double> times_ms;
+    for (const RenderReport::Frame& frame : frames) {
+        times_ms.push_back(time_of(frame));
+    }
+    std::sort(times_ms.begin(), times_ms.end());
+    const size_t count = times_ms.size();
+    const double median_ms = (times_ms[(count - 1) / 2] + times_ms[count / 2]) / 2;
+    return {{"min_ms", times_ms[0]},
+            {"median_ms", median_ms},
+            {"p95_ms", times_ms[(count * 95 + 99) / 100 - 1]}};
+}
+
+Json stageStatistics(const std::vector<RenderReport::Frame>& frames, double StageTimes::*stage) {
+    return statistics(frames,
+                      [stage](const RenderReport::Frame& frame) { return frame.times.*stage; });
+}
+
+Json hashJson(const RenderReport::Frame& frame) {
+    const FrameHashes& h = frame.hashes;
+    return {{"frame", frame.frame},  {"output", hex(h.output)}, {"color", hex(h.color)},
+            {"depth", hex(h.depth)}, {"normal", hex(h.normal)}, {"motion", hex(h.motion)},
+            {"id", hex(h.id)}};
+}
+
+uint64_t peakRssBytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return uint64_t(usage.ru_maxrss) * 1024;
+}
+
+/// File names may hold any bytes; JSON may not.
+std::string text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json errorJson(const PixelError& error, double ssim) {
+    Json json;
+    json["psnr"] = error.identical() ? Json(nullptr) : Json(psnrDb(error));
+    json["ssim"] = ssim;
+    json["max_difference"] = error.max_difference;
+    json["identical"] = error.identical();
+    return json;
+}
+
+Json pixelJson(Rgb8 c) {
+    return {c.r, c.g, c.b};
+}
+
+Json differencesJson(const std::vector<Difference>& differences) {
+    Json json = Json::array();
+    for (const Difference& d : differences) {
+        json.push_back({{"frame", d.frame},
+                        {"x", d.x},
+                        {"y", d.y},
+                        {"a", pixelJson(d.a)},
+                        {"b", pixelJson(d.b)}});
+    }
+    return json;
+}
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+    char line[256];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
+}
+
+std::string errorLine(const PixelError& error, double ssim) {
+    if (error.identical()) {
+        return "identical\n";
+    }
+    return formatted("psnr %.3f dB  ssim %.6f  max difference %d\n", psnrDb(error), ssim,
+                     error.max_difference);
+}
+
+}  // namespace
+
+std::string renderJson(const RenderReport& report) {
+    const auto& frames = report.frames;
+    Json json;
+    json["scene"] = report.scene;
+    json["triangles"] = report.triangles;
+    json["width"] = report.width;
+    json["height"] = report.height;
+    json["frames"] = frames.size();
+    json["threads"] = report.threads;
+    json["simd"] = name(report.simd);
+    json["stages"] = {{"transform_bin", stageStatistics(frames, &StageTimes::transform_bin_ms)},
+                      {"raster", stageStatistics(frames, &StageTimes::raster_ms)},
+                      {"taa", stageStatistics(frames, &StageTimes::taa_ms)},
+                      {"output", stageStatistics(frames, &StageTimes::output_ms)}};
+    json["total"] =
+        statistics(frames, [](const RenderReport::Frame& frame) { return frame.total_ms; });
+    json["peak_rss_bytes"] = peakRssBytes();
+    if (report.with_hashes) {
+        json["hashes"] = Json::array();
+        for (const RenderReport::Frame& frame : frames) {
+            json["hashes"].push_back(hashJson(frame));
+        }
+    }
+    return text(json);
+}
+
+std::string hashLines(const RenderReport& report) {
+    std::string lines;
+    for (const RenderReport::Frame& frame : report.frames) {
+        const FrameHashes& h = frame.hashes;
+        lines += "frame " + std::to_string(frame.frame) + " output " + hex(h.output) + " color " +
+                 hex(h.color) + " depth " + hex(h.depth) + " normal " + hex(h.normal) + " motion " +
+                 hex(h.motion) + " id " + hex(h.id) + "\n";
+    }
+    return lines;
+}
+
+PixelError CompareReport::error() const {
+    PixelError sum;
+    for (const Frame& frame : frames) {
+        sum += frame.error;
+    }
+    return sum;
+}
+
+double CompareReport::ssim() const {
+    double sum = 0;
+    for (const Frame& frame : frames) {
+        sum += frame.ssim;
+    }
+    return sum / double(frames.size());
+}
+
+std::string compareJson(const CompareReport& report) {
+    Json json = errorJson(report.error(), report.ssim());
+    if (report.numbered) {
+        json["frames"] = Json::array();
+        for (const CompareReport::Frame& frame : report.frames) {
+            Json entry{{"frame", frame.frame}};
+            entry.update(errorJson(frame.error, frame.ssim));
+            json["frames"].push_back(entry);
+        }
+    }
+    if (report.with_differences) {
+        json["first_differences"] = differencesJson(report.differences);
+    }
+    return text(json);
+}
+
+std::string compareLines(const CompareReport& report) {
+    std::string lines;
+    for (const CompareReport::Frame& frame : report.frames) {
+        if (report.numbered) {
+            lines += formatted("frame %d  ", frame.frame) + errorLine(frame.error, frame.ssim);
+        }
+    }
+    lines += (report.numbered ? "all  " : "") + errorLine(report.error(), report.ssim());
+    for (const Difference& d : report.differences) {
+        lines += report.numbered ? formatted("frame %d  ", d.frame) : "";
+        lines += formatted("x %d y %d: %d %d %d, %d %d %d\n", d.x, d.y, d.a.r, d.a.g, d.a.b, d.b.r,
+                           d.b.g, d.b.b);
+    }
+    return lines;
+}
+
+Outcome<void> print(const std::string& text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (!written || std::fflush(stdout) != 0) {
+        return fileError(std::string("standard output: cannot write: ") + std::strerror(errno));
+    }
+    return {};
+}
+
+}  // namespace still::command

@@ -1,0 +1,63 @@
+#pragma once
+// What goes to standard output: JSON for programs, plain lines for people.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/stillframe/outcome.h"
+#include "engine/frame_loop.h"
+#include "engine/hash.h"
+#include "postfx/metrics.h"
+
+namespace still::command {
+
+struct RenderReport {
+    std::string scene;
+    uint64_t triangles = 0;
+    int width = 0, height = 0;
+    int threads = 1;
+    SimdTarget simd = SimdTarget::scalar;
+    struct Frame {
+        int frame = 0;
+        StageTimes times;
+        double total_ms = 0;
+        FrameHashes hashes;
+    };
+    std::vector<Frame> frames;
+    bool with_hashes = false;
+};
+
+std::string renderJson(const RenderReport& report);
+/// One line a frame.
+std::string hashLines(const RenderReport& report);
+
+/// A pixel that is not the same in both pictures.
+struct Difference {
+    int frame = 0, x = 0, y = 0;
+    Rgb8 a, b;
+};
+
+struct CompareReport {
+    struct Frame {
+        int frame = 0;
+        PixelError error;
+        double ssim = 1;
+    };
+    std::vector<Frame> frames;
+    bool numbered = false;                ///< frame patterns were compared, not two pictures
+    bool with_differences = false;        ///< --exact
+    std::vector<Difference> differences;  ///< the first ones
+
+    PixelError error() const;  ///< over all frames
+    double ssim() const;       ///< mean over the frames
+};
+
+std::string compareJson(const CompareReport& report);
+std::string compareLines(const CompareReport& report);
+
+/// Writes `text` to standard output, with an error when that fails.
+Outcome<void> print(const std::string& text);
+
+}  // namespace still::command
