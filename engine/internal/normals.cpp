@@ -182,7 +182,7 @@ void generateNormals(std::span<const Vector3f> positions, std::span<const uint32
 
 std::vector<VertexTangent> generateTangents(const Mesh& mesh) {
     std::vector<Vector> along_u(mesh.vertexCount());
-    std::vector<double> mirrored(mesh.vertexCount());
+    std::vector<double> handedness(mesh.vertexCount());
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
         const Vector ab = positionOf(mesh, b) - positionOf(mesh, a);
@@ -200,8 +200,10 @@ std::vector<VertexTangent> generateTangents(const Mesh& mesh) {
         const double area = std::sqrt(dot(normal, normal));
         const Vector direction = normalisedVector((ab * cv - ac * bv) * sign) * area;
         for (const uint32_t vertex : {a, b, c}) {
+            const VertexAttributes& at = mesh.attributes[vertex];
             along_u[vertex] += direction;
-            mirrored[vertex] += sign * area;
+            // Against the vertex normal, so that it does not matter which way the triangle runs.
+            handedness[vertex] += sign * dot(normal, {at.nx, at.ny, at.nz});
         }
     }
     std::vector<VertexTangent> tangents;
@@ -212,7 +214,7 @@ std::vector<VertexTangent> generateTangents(const Mesh& mesh) {
         Vector t = normalisedVector(along_u[i] - n * dot(n, along_u[i]));
         t = t[0] == 0.0 && t[1] == 0.0 && t[2] == 0.0 ? anyOrthogonal(n) : t;
         const Vector3f f = toFloat(t);
-        tangents.push_back({f[0], f[1], f[2], mirrored[i] < 0.0 ? -1.0f : 1.0f});
+        tangents.push_back({f[0], f[1], f[2], handedness[i] < 0.0 ? -1.0f : 1.0f});
     }
     return tangents;
 }

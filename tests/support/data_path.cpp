@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <fstream>
+#include <random>
 #include <system_error>
 
 namespace still {
@@ -43,6 +45,30 @@ std::vector<std::filesystem::path> dataFiles(const std::string& relative_folder,
     }
     std::sort(files.begin(), files.end());
     return files;
+}
+
+TempFolder::TempFolder() {
+    std::random_device random;
+    path_ = std::filesystem::temp_directory_path() /
+            ("stillframe-test-" + std::to_string(random()) + "-" + std::to_string(random()));
+    std::filesystem::create_directories(path_);
+}
+
+TempFolder::~TempFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+}
+
+std::filesystem::path TempFolder::write(const std::string& name, const std::string& bytes) const {
+    const std::filesystem::path file = path_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+    return file;
+}
+
+bool isOneLineAbout(const std::string& message, const std::string& file_name) {
+    return !message.empty() && message.find_first_of("\n\r") == std::string::npos &&
+           message.find(file_name) != std::string::npos;
 }
 
 }  // namespace still

@@ -1,5 +1,5 @@
 #pragma once
-// Where the shared models and images are, for the tests that use them.
+// Files for tests: the shared models and images, and folders for files a test writes itself.
 
 #include <filesystem>
 #include <string>
@@ -18,5 +18,24 @@ std::filesystem::path dataFile(const std::string& relative);
 /// given), sorted by path.
 std::vector<std::filesystem::path> dataFiles(const std::string& relative_folder,
                                              const std::vector<std::string>& extensions = {});
+
+/// A folder of its own for one test, removed with everything in it at the end.
+class TempFolder {
+  public:
+    TempFolder();
+    ~TempFolder();
+    TempFolder(const TempFolder&) = delete;
+    TempFolder& operator=(const TempFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    /// Writes a file (folders in `name` are made) and returns its path.
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const;
+
+  private:
+    std::filesystem::path path_;
+};
+
+/// Whether an error or warning is one line, not empty, and names the file.
+bool isOneLineAbout(const std::string& message, const std::string& file_name);
 
 }  // namespace still

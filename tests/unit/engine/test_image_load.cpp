@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "engine/internal/image_load.h"
+#include "tests/support/data_path.h"
+
+using namespace still;
+
+namespace {
+
+/// Binary PPM of one colour.
+std::string ppm(int width, int height, char value) {
+    return "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" +
+           std::string(size_t(width) * size_t(height) * 3, value);
+}
+
+bool samePixels(const Image<Rgba8>& a, const Image<Rgba8>& b) {
+    if (a.width() != b.width() || a.height() != b.height()) {
+        return false;
+    }
+    for (int y = 0; y < a.height(); ++y) {
+        const auto equal = [](const Rgba8& p, const Rgba8& q) {
+            return p.r == q.r && p.g == q.g && p.b == q.b && p.a == q.a;
+        };
+        if (!std::equal(a.view().row(y), a.view().row(y) + a.width(), b.view().row(y), equal)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Loads, or gives the reason, which must be one line with the file's name.
+void loadsOrExplains(const std::filesystem::path& file) {
+    INFO(file);
+    const Result<Image<Rgba8>> image = loadImage(file);
+    if (image) {
+        CHECK(image->width() > 0);
+        CHECK(image->height() > 0);
+    } else {
+        CHECK(isOneLineAbout(image.error().message, file.filename().string()));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("image: every shared image loads or is refused with one line", "[unit][engine][data]") {
+    for (const auto& file : dataFiles("images")) {
+        loadsOrExplains(file);
+    }
+}
+
+TEST_CASE("image: valid PNGs load, truncated and foreign files do not", "[unit][engine][data]") {
+    for (const auto& file : dataFiles("images/pngsuite", {".png"})) {
+        INFO(file);
+        CHECK(loadImage(file).has_value());
+    }
+    for (const char* name :
+         {"truncated.png", "truncated.jpg", "truncated.tga", "empty.png", "not_an_image.png"}) {
+        const auto file = dataFile(std::string("images/derived/") + name);
+        INFO(name);
+        CHECK((file.empty() || !loadImage(file).has_value()));
+    }
+}
+
+TEST_CASE("image: one picture in many lossless formats gives the same pixels",
+          "[unit][engine][data]") {
+    const auto reference_file = dataFile("images/derived/rgb.png");
+    if (reference_file.empty()) {
+        return;
+    }
+    const Result<Image<Rgba8>> reference = loadImage(reference_file);
+    REQUIRE(reference);
+    for (const char* name :
+         {"rgb.ppm", "rgb24.bmp", "rgb24.tga", "rgb24_rle.tga", "rgb24_topleft.tga"}) {
+        INFO(name);
+        const Result<Image<Rgba8>> image = loadImage(reference_file.parent_path() / name);
+        REQUIRE(image);
+        CHECK(samePixels(*reference, *image));
+    }
+}
+
+TEST_CASE("image: BMPs whose palette is short are filled up with black", "[unit][engine][data]") {
+    const auto os2 = dataFile("images/bmp/pal8os2sp.bmp"), v5 = dataFile("images/bmp/pal8v5.bmp");
+    if (os2.empty() || v5.empty()) {
+        return;
+    }
+    const Result<Image<Rgba8>> a = loadImage(os2), b = loadImage(v5);
+    REQUIRE(a);
+    REQUIRE(b);
+    CHECK(samePixels(*a, *b));
+}
+
+TEST_CASE("image: files that cannot be read are named", "[unit][engine]") {
+    const TempFolder folder;
+    for (const std::filesystem::path& file :
+         {folder.path() / "missing.png", folder.path(), folder.write("empty.png", ""),
+          folder.write("text.png", "hello"), folder.write("short.ppm", "P6\n4 4\n255\nabc"),
+          folder.write("nul.png", std::string(64, '\0')),
+          folder.write("line\nbreak.png", "no image")}) {
+        const Result<Image<Rgba8>> image = loadImage(file);
+        REQUIRE_FALSE(image);
+        std::string name = file.filename().string();
+        std::replace(name.begin(), name.end(), '\n', '?');
+        CHECK(isOneLineAbout(image.error().message, name));
+    }
+}
+
+TEST_CASE("image: sizes beyond the limits are refused before decoding", "[unit][engine]") {
+    const TempFolder folder;
+    for (const char* header : {"P6\n100000 100000\n255\n", "P6\n16385 1\n255\n",
+                               "P6\n1 16385\n255\n", "P6\n0 0\n255\n"}) {
+        const Result<Image<Rgba8>> image = loadImage(folder.write("big.ppm", header));
+        REQUIRE_FALSE(image);
+        CHECK(isOneLineAbout(image.error().message, "big.ppm"));
+    }
+    const Result<Image<Rgba8>> wide = loadImage(folder.write("wide.ppm", ppm(16384, 1, 7)));
+    REQUIRE(wide);
+    CHECK(wide->width() == 16384);
+}
+
+TEST_CASE("image: opaque formats get alpha 255", "[unit][engine]") {
+    const std::string bytes = ppm(3, 2, char(200));
+    const Result<Image<Rgba8>> image =
+        decodeImage({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, "x.ppm");
+    REQUIRE(image);
+    CHECK(image->width() == 3);
+    CHECK(image->height() == 2);
+    CHECK(image->at(2, 1).r == 200);
+    CHECK(image->at(2, 1).a == 255);
+}
+
+TEST_CASE("image: HDR is clamped and encoded to sRGB", "[unit][engine]") {
+    // Flat RGBE, 4 × 1: 1.0, 0.5, 16.0 and 0 as grey. 128 · 2^(e − 136): e = 129 is 1.0.
+    const auto texel = [](int mantissa, int exponent) {
+        const char m = char(mantissa);
+        return std::string{m, m, m, char(exponent)};
+    };
+    const std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 4\n" +
+                              texel(128, 129) + texel(128, 128) + texel(128, 133) + texel(0, 0);
+    const Result<Image<Rgba8>> image =
+        decodeImage({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, "x.hdr");
+    REQUIRE(image);
+    CHECK(image->at(0, 0).r == 255);
+    CHECK(image->at(1, 0).g == 188);
+    CHECK(image->at(2, 0).b == 255);
+    CHECK(image->at(3, 0).r == 0);
+}
+
+TEST_CASE("image: no prefix of a file crashes the decoder", "[unit][engine]") {
+    const std::string whole = ppm(5, 4, 'x');
+    for (size_t length = 0; length < whole.size(); ++length) {
+        const std::string part = whole.substr(0, length);
+        const auto image =
+            decodeImage({reinterpret_cast<const uint8_t*>(part.data()), part.size()}, "p.ppm");
+        CHECK_FALSE(image);
+    }
+}
