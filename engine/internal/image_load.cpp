@@ -152,23 +152,34 @@ Result<Image<Rgba8>> decodeHdr(std::span<const uint8_t> bytes, const std::string
     return image;
 }
 
+/// Grey, grey + alpha, RGB or RGBA.
+Rgba8 pixelOf(const stbi_uc* p, int channels) {
+    const int g = channels >= 3 ? 1 : 0, b = channels >= 3 ? 2 : 0;
+    const bool has_alpha = channels == 2 || channels == 4;
+    return {p[0], p[g], p[b], has_alpha ? p[channels - 1] : stbi_uc{255}};
+}
+
 Result<Image<Rgba8>> decodeBytes(std::span<const uint8_t> bytes, const std::string& name) {
     ByteSource source(bytes);
     const stbi_io_callbacks io = ByteSource::callbacks();
     int width = 0, height = 0, channels = 0;
+    // Channels as they are in the file: asked for four, the decoder reads past the end of 16-bit
+    // PNMs.
     const std::unique_ptr<stbi_uc, FreePixels> pixels(
-        stbi_load_from_callbacks(&io, &source, &width, &height, &channels, 4));
+        stbi_load_from_callbacks(&io, &source, &width, &height, &channels, 0));
     if (!pixels) {
         return refuseAsDecoder(name);
     }
     if (source.overrun()) {
         return refuse(name, "truncated");
     }
-    static_assert(sizeof(Rgba8) == 4);
     Image<Rgba8> image(width, height);
+    const stbi_uc* p = pixels.get();
     for (int y = 0; y < height; ++y) {
-        const stbi_uc* row = pixels.get() + size_t(y) * size_t(width) * 4;
-        std::memcpy(static_cast<void*>(image.view().row(y)), row, size_t(width) * 4);
+        Rgba8* row = image.view().row(y);
+        for (int x = 0; x < width; ++x, p += channels) {
+            row[x] = pixelOf(p, channels);
+        }
     }
     return image;
 }
