@@ -1,5 +1,7 @@
 #include "demos/scenes/courtyard.h"
 
+#include <cmath>
+
 #include "demos/scenes/scene_builder.h"
 #include "demos/scenes/scenes.h"
 #include "demos/scenes/solids.h"
@@ -19,7 +21,7 @@ void addFlyingKnot(Scene& scene, const Palette& palette) {
     knot.tracks.scale.keys = {{0, dvec3{0.52}}};
     constexpr int kKeys = 60;
     for (int i = 0; i <= kKeys; ++i) {
-        const double t = double(i) / kKeys, turns = t + 0.70;
+        const double t = double(i) / kKeys, turns = t + 0.87;
         const dvec3 offset{3.5 * det::cosTurns(turns), 2.15 + 0.35 * det::sinTurns(2 * t),
                            -3.5 * det::sinTurns(turns)};
         knot.tracks.translation.keys.push_back({t * kLoopFrames, kFountain + offset});
@@ -28,20 +30,45 @@ void addFlyingKnot(Scene& scene, const Palette& palette) {
     knot.tracks.rotation_deg.keys = {{0, 0}, {kLoopFrames, 720}};
 }
 
+/// The ball's shadow on the path, for a ball above the origin: an ellipse, long along the sun.
+Mesh ballShadow(const Palette& palette, double radius) {
+    constexpr int kSteps = 40;
+    const dvec3 per_metre = kSun / -kSun.y;
+    const dvec3 flat{kSun.x, 0, kSun.z};
+    const double length = std::sqrt(flat.x * flat.x + flat.z * flat.z);
+    const dvec3 along = flat / length, across{along.z, 0, -along.x};
+    const double stretch = std::sqrt(1 + length * length / (kSun.y * kSun.y));
+    const dvec3 centre{per_metre.x * radius, 0.005, per_metre.z * radius};
+    std::vector<dvec3> corners;
+    std::vector<dvec2> uvs;
+    for (int i = 0; i < kSteps; ++i) {
+        const double turns = double(i) / kSteps;
+        corners.push_back(centre + along * (radius * stretch * det::cosTurns(turns)) +
+                          across * (radius * det::sinTurns(turns)));
+        uvs.push_back(dvec2{corners.back().x, -corners.back().z} / 3.0);
+    }
+    MeshBuilder out(palette.path_shaded);
+    out.polygon(corners, uvs);
+    return out.take();
+}
+
 /// A ball that rolls across the court without slipping and comes back.
 void addRollingBall(Scene& scene, const Palette& palette) {
     constexpr double kRadius = 0.36, kWay = 4.8, kDegreesPerMetre = 57.29577951308232 / kRadius;
     MeshBuilder out(palette.ball);
     out.append(shapes::sphere(40, 20), dmat4{1.0});
-    SceneObject& ball = addObject(scene, "rolling ball", out.take());
+    addObject(scene, "rolling ball", out.take());
+    const dvec3 start{-4.6, kRadius, 3.9};
+    SceneObject& shadow = addObject(scene, "ball shadow", ballShadow(palette, kRadius));
+    SceneObject& ball = scene.objects[scene.objects.size() - 2];
     // The stripes' pole lies along the axis of rolling.
     ball.base = dmat4{{kRadius, 0, 0, 0}, {0, 0, kRadius, 0}, {0, -kRadius, 0, 0}, {0, 0, 0, 1}};
     ball.tracks.rotation_axis = {0, 0, -1};
-    const dvec3 start{-4.6, kRadius, 3.6};
     for (int i = 0; i <= 40; ++i) {
         const double way = kWay * (0.5 - 0.5 * det::cosTurns(i / 40.0));
         const double frame = i * (kLoopFrames / 40.0);
         ball.tracks.translation.keys.push_back({frame, start + dvec3{way, 0, 0}});
+        shadow.tracks.translation.keys.push_back({frame, dvec3{start.x + way, 0, start.z}});
         ball.tracks.rotation_deg.keys.push_back({frame, way * kDegreesPerMetre});
     }
 }
@@ -64,6 +91,7 @@ Scene makeCourtyard() {
     Scene scene;
     scene.name = "courtyard";
     const Palette palette = addPalette(scene);
+    addHorizon(scene, palette);
     addGround(scene, palette);
     addColumns(scene, palette);
     addWings(scene, palette);

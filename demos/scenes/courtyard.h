@@ -29,13 +29,17 @@ constexpr double kWallHalf = 0.3;  ///< half thickness of the walls above the ar
 constexpr double kEaves = 5.4;     ///< top of these walls
 constexpr double kDepth = 3.6;     ///< from the columns to the back wall
 constexpr double kWallTop = 7.4;
+constexpr double kDadoHeight = 0.9, kDadoProud = 0.06;  ///< stone foot of the back walls
 constexpr double kFenceX = 8.8;
 constexpr double kFenceHeight = 2.6;
 constexpr dvec3 kFountain{0.6, 0, -0.6};
 constexpr int kLoopFrames = 240;
+/// A band of plain stone crosses the court; the ball rolls on it, because a moving shadow needs a
+/// floor without pattern.
+constexpr double kPathFrom = 3.0, kPathTo = 4.5;
 
 /// The way sunlight travels, not yet of unit length.
-constexpr dvec3 kSun{-0.52, -0.60, -0.56};
+constexpr dvec3 kSun{-0.66, -0.60, -0.45};
 constexpr dvec3 kSunColour{1.18, 1.02, 0.78};
 constexpr dvec3 kAmbient{0.27, 0.31, 0.39};
 
@@ -54,11 +58,11 @@ std::array<Wing, 2> wings();
 
 /// Material numbers.
 struct Palette {
-    uint32_t court_floor, court_floor_shaded, walk_lit, walk_shaded;
+    uint32_t court_floor, court_floor_shaded, walk_lit, walk_shaded, path, path_shaded;
     uint32_t marble, stone, stone_shaded, brick, brick_shaded, ceiling, beam, clay, clay_under;
     uint32_t door, mesh_wire, metal, cable, pole_wood;
     uint32_t basin, water, bronze, knot, ball, pot, shrub, tree, grass, hill_near, hill_far;
-    uint32_t lantern_frame, lantern_bulb;
+    uint32_t lantern_frame, lantern_bulb, sky, spray;
 };
 Palette addPalette(Scene& scene);
 
@@ -66,6 +70,7 @@ void addColumns(Scene& scene, const Palette& palette);
 void addWings(Scene& scene, const Palette& palette);
 void addRoofs(Scene& scene, const Palette& palette);
 void addGround(Scene& scene, const Palette& palette);
+void addHorizon(Scene& scene, const Palette& palette);
 void addFountain(Scene& scene, const Palette& palette);
 void addFence(Scene& scene, const Palette& palette);
 void addPowerLines(Scene& scene, const Palette& palette);

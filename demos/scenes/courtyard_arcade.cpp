@@ -145,6 +145,12 @@ Mesh facadeMesh(const Wing& wing, const Palette& palette) {
     for (int bay = 0; bay < wing.bays; ++bay) {
         addSpandrel(out, (bay + 0.5) * kBay, -kWallHalf);
     }
+    // The shadow of the eaves.
+    const double drop = 0.5 * wing.sun.y / wing.sun.z, low = kEaves + 0.38 - drop;
+    const dvec3 foot{-kWallHalf, low, kWallHalf + 0.004};
+    out.useMaterial(palette.brick_shaded);
+    out.rectangle(foot, {wing.bays * kBay + 2 * kWallHalf, 0, 0}, {0, kEaves - low, 0}, kBrickTile,
+                  brickUv(foot));
     return out.takeWithTangents();
 }
 
@@ -187,8 +193,9 @@ Mesh backWallMesh(const Wing& wing, const Palette& palette) {
         out.box({to, -kFloorRise, -kDepth}, {to + 0.4, kEaves, kWallHalf}, kBrickTile);
     }
     out.useMaterial(palette.stone_shaded);
-    out.rectangle({from, 0, -kDepth + 0.06}, {length, 0, 0}, {0, 0.9, 0}, kStoneTile);
-    out.rectangle({from, 0.9, -kDepth + 0.06}, {length, 0, 0}, {0, 0, -0.06}, kStoneTile);
+    const dvec3 dado{from, 0, -kDepth + kDadoProud}, up{0, kDadoHeight, 0};
+    out.rectangle(dado, {length, 0, 0}, up, kStoneTile);
+    out.rectangle(dado + up, {length, 0, 0}, {0, 0, -kDadoProud}, kStoneTile);
     out.useMaterial(palette.stone);
     out.box({from - 0.5, kWallTop, -kDepth - 0.5}, {to + 0.5, kWallTop + 0.12, -kDepth + 0.12},
             kStoneTile);

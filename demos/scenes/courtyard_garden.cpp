@@ -6,6 +6,7 @@
 #include "demos/scenes/noise.h"
 #include "demos/scenes/scene_builder.h"
 #include "demos/scenes/solids.h"
+#include "engine/det_math.h"
 #include "engine/shapes.h"
 
 namespace still::scenes::courtyard {
@@ -57,6 +58,24 @@ Mesh waterMesh(const Palette& palette) {
     return mesh;
 }
 
+/// Thin streams from the upper bowl's rim into the basin.
+Mesh jetsMesh(const Palette& palette) {
+    constexpr int kJets = 12, kSteps = 12;
+    MeshBuilder out(palette.spray);
+    for (int jet = 0; jet < kJets; ++jet) {
+        const double turns = (jet + 0.5) / kJets;
+        const dvec3 direction{det::cosTurns(turns), 0, -det::sinTurns(turns)};
+        std::vector<dvec3> path;
+        for (int i = 0; i <= kSteps; ++i) {
+            const double t = double(i) / kSteps;
+            path.push_back(kFountain + direction * (0.95 + 0.34 * t) +
+                           dvec3{0, 2.15 + 0.16 * t - 1.46 * t * t, 0});
+        }
+        addTube(out, path, 0.011, 5);
+    }
+    return out.take();
+}
+
 Mesh statueMesh(const Palette& palette) {
     const dvec3 centre = kFountain + dvec3{0, 2.92, 0};
     MeshBuilder out(palette.bronze);
@@ -99,6 +118,16 @@ Mesh treeMesh(const Palette& palette, const dvec3& radii, double trunk, int card
     return out.take();
 }
 
+Mesh bushMesh(const Palette& palette) {
+    MeshBuilder out(palette.shrub);
+    addFoliage(out, {.centre = {0, 0.45, 0},
+                     .radii = {0.9, 0.6, 0.9},
+                     .cards = 130,
+                     .card_size = 0.38,
+                     .seed = 53});
+    return out.take();
+}
+
 /// Height of the cross-arm's wires on their insulators.
 constexpr double kWireHeight = 8.62;
 constexpr double kWireOffsets[] = {-0.85, -0.3, 0.85};
@@ -122,8 +151,8 @@ Mesh polesMesh(const Palette& palette) {
 }  // namespace
 
 std::vector<dvec3> potPlaces() {
-    return {{-6.9, 0, -7.9}, {-4.8, 0, -8.0}, {1.6, 0, -8.0}, {8.0, 0, -7.7},
-            {-7.0, 0, -2.6}, {-7.0, 0, 3.8},  {-7.0, 0, 10.2}};
+    return {{-6.9, 0, -7.9}, {-1.6, 0, -8.0}, {4.8, 0, -8.0}, {8.0, 0, -7.7},
+            {-7.0, 0, -5.8}, {-7.0, 0, 0.6},  {-7.0, 0, 7.0}};
 }
 
 std::vector<dvec3> polePlaces() {
@@ -136,6 +165,7 @@ void addFountain(Scene& scene, const Palette& palette) {
     addLathe(basin, kFountain, stemProfile(), {.segments = 64, .u_repeat = 2});
     addObject(scene, "fountain", basin.take());
     addObject(scene, "water", waterMesh(palette));
+    addObject(scene, "water jets", jetsMesh(palette));
     addObject(scene, "statue", statueMesh(palette));
 }
 
@@ -192,7 +222,7 @@ void addPlants(Scene& scene, const Palette& palette) {
         addMesh(scene, "cypress", treeMesh(palette, {0.95, 4.4, 0.95}, 0.8, 520, 0.75, 51));
     const uint32_t oak =
         addMesh(scene, "tree", treeMesh(palette, {2.5, 2.0, 2.5}, 2.0, 620, 0.85, 52));
-    const auto plant = [&](const char* name, uint32_t mesh, const dvec3& at, double size) {
+    const auto plant = [&](const std::string& name, uint32_t mesh, const dvec3& at, double size) {
         addObject(scene, name, mesh).base = placed(at, dvec3{size});
     };
     plant("cypress 0", cypress, {-6.2, 0, -17.5}, 1.15);
@@ -202,6 +232,12 @@ void addPlants(Scene& scene, const Palette& palette) {
     plant("tree 0", oak, {19.0, 0, -11.0}, 1.1);
     plant("tree 1", oak, {17.0, 0, -30.0}, 1.3);
     plant("tree 2", oak, {26.0, 0, 1.0}, 1.2);
+    const uint32_t bush = addMesh(scene, "bush", bushMesh(palette));
+    for (int i = 0; i < 9; ++i) {
+        const double z = -19 + 3.6 * i + hashRange(i, 0, 95, -0.9, 0.9);
+        plant("bush " + std::to_string(i), bush, {10.6 + hashRange(i, 1, 95, 0, 0.9), 0, z},
+              hashRange(i, 2, 95, 0.7, 1.25));
+    }
 }
 
 void addLantern(Scene& scene, const Palette& palette) {

@@ -68,6 +68,9 @@ void addFloors(Painter& add, Palette& p) {
     const int32_t checker = addTexture(add.scene, paintChecker({.seed = 3}, kLarge));
     p.court_floor = add.polished(checker, {0.10, 0.10, 0.10}, 60);
     p.court_floor_shaded = add.textured(checker, shade(up, 0.95));
+    const int32_t limestone = add.mottle({212, 194, 162}, {202, 183, 150}, 4, 9);
+    p.path = add.textured(limestone);
+    p.path_shaded = add.textured(limestone, shade(up, 0.95));
     const int32_t slabs = addTexture(add.scene, paintBond({.columns = 3,
                                                            .rows = 4,
                                                            .joint = 0.03,
@@ -120,6 +123,7 @@ void addFountainAndToys(Painter& add, Palette& p) {
                            .specular = {0.9f, 0.85f, 0.75f},
                            .shininess = 160,
                            .normal_texture = addTexture(add.scene, paintRipples(0.5, 16, kSmall))});
+    p.spray = add.plain({0.62, 0.70, 0.74}, {0.5, 0.5, 0.5}, 60);
     p.knot = add.plain({0.50, 0.035, 0.03}, {0.75, 0.70, 0.66}, 120);
     const int32_t stripes =
         addTexture(add.scene, paintStripes(8, {236, 232, 220}, {36, 96, 168}, kSmall));
@@ -136,8 +140,10 @@ void addNature(Painter& add, Palette& p) {
     p.shrub = add.cutOut(shapes, bright, dvec3{1.0});
     p.tree = add.cutOut(shapes, dark, dvec3{1.0});
     p.grass = add.textured(add.mottle({128, 140, 74}, {164, 158, 98}, 6, 19));
-    p.hill_near = add.plain({0.12, 0.19, 0.12});
-    p.hill_far = add.plain({0.20, 0.30, 0.38});
+    p.hill_near = add.textured(add.mottle({112, 132, 92}, {86, 110, 80}, 8, 20));
+    p.hill_far = add.plain({0.30, 0.41, 0.50});
+    // The dome's normals are at right angles to the sun, so the texture shows as it is painted.
+    p.sky = add.textured(addTexture(add.scene, paintSky(77, 1536, 384)), dvec3{1.0} / kAmbient);
 }
 
 }  // namespace

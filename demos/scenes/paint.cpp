@@ -19,14 +19,19 @@ uint8_t toByte(double value) {
 
 /// Calls pixel(u, v) for every texel centre; v is 0 at the bottom row.
 template <class Pixel>
-Image<Rgba8> painted(int size, Pixel&& pixel) {
-    Image<Rgba8> image(size, size);
-    for (int y = 0; y < size; ++y) {
-        for (int x = 0; x < size; ++x) {
-            image.at(x, y) = pixel((x + 0.5) / size, 1 - (y + 0.5) / size);
+Image<Rgba8> painted(int width, int height, Pixel&& pixel) {
+    Image<Rgba8> image(width, height);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            image.at(x, y) = pixel((x + 0.5) / width, 1 - (y + 0.5) / height);
         }
     }
     return image;
+}
+
+template <class Pixel>
+Image<Rgba8> painted(int size, Pixel&& pixel) {
+    return painted(size, size, pixel);
 }
 
 Rgba8 toRgba(const dvec3& colour) {
@@ -159,6 +164,23 @@ Texture paintRipples(double slope, uint32_t seed, int size) {
     return makeNormalTexture(image.view(), Wrap::repeat);
 }
 
+Texture paintSky(uint32_t seed, int width, int height) {
+    const dvec3 zenith{78, 138, 214}, middle{134, 180, 234}, haze{206, 222, 236},
+        cloud{250, 248, 244};
+    const Image<Rgba8> image = painted(width, height, [&](double u, double v) {
+        const double up = det::sinTurns(v / 4), flat = det::cosTurns(v / 4);
+        const dvec3 clear =
+            mix(mix(haze, middle, smoothStep(0.0, 0.22, up)), zenith, smoothStep(0.12, 0.95, up));
+        // Where the view ray meets a sheet of clouds; far out they melt into the haze.
+        const double far = flat / (up + 0.16);
+        const double x = 0.13 * far * det::cosTurns(u), y = 0.13 * far * det::sinTurns(u);
+        const double shape = fractalNoise(x + 0.5, y + 0.5, 12, 6, seed);
+        const double cover = smoothStep(0.52, 0.72, shape) * smoothStep(0.02, 0.25, up);
+        return toRgba(mix(clear, cloud, 0.85 * cover));
+    });
+    return makeColourTexture(image.view(), Wrap::repeat);
+}
+
 AlphaTexture paintChainLink(int cells, double wire, int size) {
     // Alpha falls over about one texel, so that the half-way line is where the wire ends.
     const double soft = 1.4 * cells / size;
@@ -168,7 +190,11 @@ AlphaTexture paintChainLink(int cells, double wire, int size) {
         const double inside = 0.5 * wire - std::min(da, db);
         return Rgba8{255, 255, 255, toByte(255 * std::clamp(0.5 + inside / soft, 0.0, 1.0))};
     });
-    return makeAlphaTexture(image.view(), Wrap::repeat, true);
+    AlphaTexture texture = makeAlphaTexture(image.view(), Wrap::repeat, true);
+    while (texture.levels.size() > 1 && double(texture.levels.back().width) * wire < 0.7 * cells) {
+        texture.levels.pop_back();
+    }
+    return texture;
 }
 
 namespace {

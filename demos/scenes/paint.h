@@ -50,8 +50,13 @@ Texture paintStripes(int stripes, const glm::dvec3& a, const glm::dvec3& b, int 
 /// Ripples of water as a normal map; slopes up to about `slope`.
 Texture paintRipples(double slope, uint32_t seed, int size);
 
+/// Sky over a half dome: u once around, v from the horizon to the zenith. Blue that fades into
+/// haze, with clouds on a level sheet overhead.
+Texture paintSky(uint32_t seed, int width, int height);
+
 /// Chain link: wires along both diagonals, `cells` × `cells` meshes; `wire` is a wire's width as a
-/// share of a mesh's diagonal.
+/// share of a mesh's diagonal. The chain of levels ends where a wire is still about a texel wide:
+/// an alpha test on anything coarser would show all or nothing instead of a share of the samples.
 AlphaTexture paintChainLink(int cells, double wire, int size);
 
 /// 2 × 2 clusters of pointed leaves. Colour and alpha belong together.
