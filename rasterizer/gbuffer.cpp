@@ -6,6 +6,9 @@
 namespace still {
 
 void GBuffer::resize(int width, int height, PlaneSet wanted) {
+    if (width != this->width() || height != this->height() || wanted != planes) {
+        motion_is_zero.clear();
+    }
     planes = wanted;
     red.resize(width, height);
     green.resize(width, height);
@@ -18,6 +21,7 @@ void GBuffer::resize(int width, int height, PlaneSet wanted) {
     tiles_x = (width + kTileSize - 1) / kTileSize;
     tiles_y = (height + kTileSize - 1) / kTileSize;
     tiles.resize(size_t(tiles_x) * size_t(tiles_y));
+    motion_is_zero.resize(tiles.size(), 0);
 }
 
 NormalVector decodeOctahedral(uint32_t packed) {

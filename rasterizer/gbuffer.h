@@ -56,6 +56,8 @@ struct GBuffer {
     Image<uint16_t> depth_before;  ///< logDepth16 the surface had in the previous frame (expected)
     int tiles_x = 0, tiles_y = 0;
     std::vector<TileFacts> tiles;  ///< row by row
+    /// Per tile, 1 while its motion holds zeros: a tile that stays still is not written again.
+    std::vector<uint8_t> motion_is_zero;
 
     int width() const { return red.width(); }
     int height() const { return red.height(); }

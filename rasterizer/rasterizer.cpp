@@ -43,8 +43,6 @@ struct Rasterizer::State {
     std::vector<internal::ChunkInput> inputs;
     std::vector<internal::Chunk> chunks;  ///< the first inputs.size() are in use
     std::vector<std::unique_ptr<internal::TileScratch>> scratch;
-    std::vector<uint8_t> zero_motion;  ///< per tile of the G-buffer last written
-    const GBuffer* last_target = nullptr;
 
     void cutVertices(const DrawList& list) {
         vertices.resize(setup.vertex_count);
@@ -119,21 +117,14 @@ void Rasterizer::transformAndBin(const DrawList& list, const FrameView& view,
 void Rasterizer::rasterize(GBuffer& out, Workers& workers) {
     State& s = *state_;
     const FrameView& view = *s.setup.tables.view;
-    const bool same_target = &out == s.last_target && out.width() == view.width &&
-                             out.height() == view.height && out.planes == s.settings.planes;
     out.resize(view.width, view.height, s.settings.planes);
-    if (!same_target) {
-        s.zero_motion.assign(out.tiles.size(), 0);
-        s.last_target = &out;
-    }
     while (s.scratch.size() < size_t(workers.threads())) {
         s.scratch.push_back(std::make_unique<internal::TileScratch>());
     }
     workers.parallelFor(int(out.tiles.size()), 1, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
             internal::renderTile(s.setup, s.chunks, s.inputs.size(), s.settings, i % out.tiles_x,
-                                 i / out.tiles_x, out, s.zero_motion[size_t(i)],
-                                 *s.scratch[size_t(worker)]);
+                                 i / out.tiles_x, out, *s.scratch[size_t(worker)]);
         }
     });
 }

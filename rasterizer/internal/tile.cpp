@@ -194,19 +194,25 @@ void notePixels(const TileContext& tile, TileFacts& facts) {
     facts.max_depth = uint32_t(high);
 }
 
-/// Zeros for a tile in which nothing moved: motion is zero, and the expected depth is its own.
-void writeStillMotion(const TileContext& tile) {
-    for (int y = 0; y < tile.height; ++y) {
-        const ptrdiff_t at = y * tile.planes.stride;
-        std::fill_n(tile.planes.motion + at, tile.width, Motion{});
-        std::fill_n(tile.planes.depth_before + at, tile.width, uint16_t{0});
+/// In a tile in which nothing moved, motion is zero and the expected depth is the depth itself.
+/// Called when the tile is shaded; zeros that stand already are left.
+void writeStillMotion(const TilePlanes& planes, int width, int height, uint8_t& motion_is_zero) {
+    for (int y = 0; y < height; ++y) {
+        const ptrdiff_t at = y * planes.stride;
+        if (motion_is_zero == 0) {
+            std::fill_n(planes.motion + at, width, Motion{});
+        }
+        for (int x = 0; x < width; ++x) {
+            planes.depth_before[at + x] = logDepth16(planes.depth[at + x]);
+        }
     }
+    motion_is_zero = 1;
 }
 
 }  // namespace
 
 void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
-                const RasterSettings& settings, int tx, int ty, GBuffer& out, uint8_t& zero_motion,
+                const RasterSettings& settings, int tx, int ty, GBuffer& out,
                 TileScratch& scratch) {
     const FrameTables& frame = setup.tables;
     TileContext tile;
@@ -234,14 +240,13 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
             ref.triangle->alpha != 0 &&
             frame.surfaces[ref.triangle->surface].material->alpha_mode == AlphaMode::stochastic;
     }
-    if (facts.still() && tile.planes.motion != nullptr) {
-        if (zero_motion == 0) {
-            writeStillMotion(tile);
-        }
+    const TilePlanes planes = tile.planes;
+    const bool still_motion = facts.still() && planes.motion != nullptr;
+    uint8_t& motion_is_zero = out.motion_is_zero[size_t(ty) * size_t(out.tiles_x) + size_t(tx)];
+    if (still_motion) {
         tile.planes.motion = nullptr;
-        zero_motion = 1;
     } else {
-        zero_motion = 0;
+        motion_is_zero = 0;
     }
 
     const RasterKernels& kernels = kernelsFor(settings.simd);
@@ -254,6 +259,9 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
     if (!tile.forward) {
         renderer.prepareVisible();
         kernels.shadeTile(tile);
+    }
+    if (still_motion) {
+        writeStillMotion(planes, tile.width, tile.height, motion_is_zero);
     }
     notePixels(tile, facts);
 }

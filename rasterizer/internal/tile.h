@@ -39,10 +39,9 @@ struct TileScratch {
     alignas(64) uint32_t visible[kTilePixels];
 };
 
-/// Renders tile (tx, ty). `zero_motion` tells, per tile, that its motion plane already holds zeros;
-/// it is read and updated.
+/// Renders tile (tx, ty).
 void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
-                const RasterSettings& settings, int tx, int ty, GBuffer& out, uint8_t& zero_motion,
+                const RasterSettings& settings, int tx, int ty, GBuffer& out,
                 TileScratch& scratch);
 
 }  // namespace still::internal
