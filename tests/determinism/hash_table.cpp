@@ -94,12 +94,15 @@ std::string firstDifference(const FrameRecord& expected, const FrameRecord& foun
             std::mismatch(a.tiles.begin(), a.tiles.begin() + ptrdiff_t(count), b.tiles.begin())
                 .first -
             a.tiles.begin());
-        const std::string where = tile < count
-                                      ? "tile (" + std::to_string(tile % size_t(tiles_x)) + ", " +
-                                            std::to_string(tile / size_t(tiles_x)) + ")"
-                                      : "no single tile";
-        return std::string("stage ") + kNames[stage] + ", " + where + ": " + hex(b.whole) +
-               ", expected " + hex(a.whole);
+        std::ostringstream text;
+        text << "stage " << kNames[stage] << ", ";
+        if (tile < count) {
+            text << "tile (" << tile % size_t(tiles_x) << ", " << tile / size_t(tiles_x) << ")";
+        } else {
+            text << "no single tile";
+        }
+        text << ": " << hex(b.whole) << ", expected " << hex(a.whole);
+        return text.str();
     }
     return {};
 }

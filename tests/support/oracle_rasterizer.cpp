@@ -150,6 +150,24 @@ double Frame::depthAt(const Triangle& triangle, int px, int py) const {
     return 0;
 }
 
+double Frame::depthSlope(const Triangle& triangle) const {
+    const std::vector<Corner>& p = triangle.polygon;
+    double steepest = 0;
+    for (size_t k = 2; k < p.size(); ++k) {
+        const double area = double(edge(p[0], p[k - 1], p[k].x_fx8, p[k].y_fx8));
+        if (area == 0) {
+            continue;
+        }
+        const double z1 = p[k - 1].depth - p[0].depth, z2 = p[k].depth - p[0].depth;
+        const double dx =
+            z1 * double(p[k].y_fx8 - p[0].y_fx8) - z2 * double(p[k - 1].y_fx8 - p[0].y_fx8);
+        const double dy =
+            z2 * double(p[k - 1].x_fx8 - p[0].x_fx8) - z1 * double(p[k].x_fx8 - p[0].x_fx8);
+        steepest = std::max(steepest, (std::abs(dx) + std::abs(dy)) / std::abs(area));
+    }
+    return steepest * kSubpixelOne;
+}
+
 bool Frame::nearCreatedEdge(const Triangle& triangle, int px, int py, double distance_px) const {
     const auto [x, y] = sample(px, py);
     const std::vector<Corner>& p = triangle.polygon;

@@ -78,6 +78,8 @@ class Frame {
     bool covers(const Triangle& triangle, int px, int py) const;
     /// Depth of the polygon's plane at the sample. Precondition: covers().
     double depthAt(const Triangle& triangle, int px, int py) const;
+    /// How fast the depth changes, per pixel in x and y together; of the steepest piece.
+    double depthSlope(const Triangle& triangle) const;
     /// True when the sample lies within `distance_px` of an edge that ends in a created corner.
     bool nearCreatedEdge(const Triangle& triangle, int px, int py, double distance_px) const;
     Attributes attributes(const Triangle& triangle, int px, int py, double snap_px) const;

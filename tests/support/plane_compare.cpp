@@ -1,13 +1,15 @@
 #include "tests/support/plane_compare.h"
 
+#include <sstream>
+
 namespace still::test {
 namespace {
 
-std::string text(uint32_t v) {
-    return std::to_string(v);
+void print(std::ostream& out, uint32_t v) {
+    out << v;
 }
-std::string text(Motion v) {
-    return "(" + std::to_string(v.x_fx8) + ", " + std::to_string(v.y_fx8) + ")";
+void print(std::ostream& out, Motion v) {
+    out << "(" << v.x_fx8 << ", " << v.y_fx8 << ")";
 }
 
 template <class T>
@@ -18,9 +20,13 @@ std::string firstDifference(const std::string& plane, ImageView<const T> a, Imag
     for (int y = 0; y < a.height; ++y) {
         for (int x = 0; x < a.width; ++x) {
             if (!(a.at(x, y) == b.at(x, y))) {
-                return plane + ": tile (" + std::to_string(x / kTileSize) + ", " +
-                       std::to_string(y / kTileSize) + "), pixel (" + std::to_string(x) + ", " +
-                       std::to_string(y) + "): " + text(a.at(x, y)) + " and " + text(b.at(x, y));
+                std::ostringstream text;
+                text << plane << ": tile (" << x / kTileSize << ", " << y / kTileSize
+                     << "), pixel (" << x << ", " << y << "): ";
+                print(text, a.at(x, y));
+                text << " and ";
+                print(text, b.at(x, y));
+                return text.str();
             }
         }
     }

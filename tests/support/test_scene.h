@@ -19,7 +19,7 @@ struct TestVertex {
 /// Owns a draw list. After the last change call list(), which numbers the surfaces.
 struct TestScene {
     std::vector<Mesh> meshes;
-    std::vector<Material> materials{Material{}};
+    std::vector<Material> materials = std::vector<Material>(1);
     std::vector<Texture> textures;
     std::vector<AlphaTexture> alpha_textures;
     std::vector<Instance> instances;

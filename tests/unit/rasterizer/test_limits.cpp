@@ -181,7 +181,7 @@ TEST_CASE("limits: counters tell what became of the triangles", "[limits]") {
     TestScene scene;
     addDeep(scene, DeepKind::behind, random);
     scene.addTriangle({-1, -1, -3, {}}, {1, -1, -3, {}}, {0, 1, -3, {}});
-    scene.addTriangle({-1, -1, -3, {}}, {1, -1, -3, {}}, {0, 1, 3, {}});
+    scene.addTriangle({-1, -1, -3, {}}, {1, -1, -3, {}}, {0, 4, 3, {}});
     const DrawList list = scene.list();
     Workers workers(1);
     Rasterizer rasterizer;
