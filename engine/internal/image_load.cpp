@@ -9,13 +9,18 @@
 #include <vector>
 
 #include "engine/det_math.h"
+#include "engine/internal/image_guard.h"
 #include "engine/internal/obj_text.h"
 
-// The decoder's own limits and its scalar code: what a file decodes to must not depend on the CPU.
+// Scalar code, and memory that is zero where a corrupt file makes the decoder read before it
+// writes: what a file decodes to must depend on nothing else.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD
+#define STBI_MALLOC(size) std::calloc(1, size)
+#define STBI_REALLOC(pointer, size) std::realloc(pointer, size)
+#define STBI_FREE(pointer) std::free(pointer)
 #define STBI_MAX_DIMENSIONS 16384
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -79,33 +84,6 @@ tl::unexpected<Error> refuse(const std::string& name, const std::string& why) {
 tl::unexpected<Error> refuseAsDecoder(const std::string& name) {
     const char* reason = stbi_failure_reason();
     return refuse(name, reason != nullptr ? reason : "unknown reason");
-}
-
-/// The decoder leaves palette entries that a BMP does not have uninitialised, although pixels may
-/// use them, and loses the last four of OS/2 files (12-byte header, 3 bytes an entry). So the
-/// palette is filled up with black ones. Empty when there is nothing to do.
-std::vector<uint8_t> withFullBmpPalette(std::span<const uint8_t> bytes) {
-    constexpr size_t kFileHeader = 14, kEntries = 256;
-    if (bytes.size() < 54 || bytes[0] != 'B' || bytes[1] != 'M') {
-        return {};
-    }
-    const auto word = [&](size_t at) {
-        return size_t(bytes[at]) | size_t(bytes[at + 1]) << 8 | size_t(bytes[at + 2]) << 16 |
-               size_t(bytes[at + 3]) << 24;
-    };
-    const bool old = word(14) == 12;
-    const size_t pixels = word(10), palette = kFileHeader + word(14);
-    const size_t full_size = old ? 3 * (kEntries + 4) : 4 * kEntries;
-    if (bytes[old ? 24 : 28] > 8 || pixels <= palette || pixels >= palette + full_size ||
-        pixels > bytes.size()) {
-        return {};
-    }
-    std::vector<uint8_t> full(bytes.begin(), bytes.end());
-    full.insert(full.begin() + ptrdiff_t(pixels), palette + full_size - pixels, uint8_t{0});
-    for (size_t i = 0; i < 4; ++i) {
-        full[10 + i] = uint8_t((palette + full_size) >> (8 * i));
-    }
-    return full;
 }
 
 /// Linear light up to which the sRGB code is at most the index: decoded (code + 0.5) / 255.
@@ -193,6 +171,9 @@ Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::stri
     if (bytes.size() > size_t(INT_MAX)) {
         return refuse(name, "larger than 2 GiB");
     }
+    if (hasOversizedHuffmanTable(bytes)) {
+        return refuse(name, "Huffman table of more than 256 codes");
+    }
     int width = 0, height = 0, channels = 0;
     const int length = int(bytes.size());
     if (!stbi_info_from_memory(bytes.data(), length, &width, &height, &channels)) {
@@ -210,7 +191,7 @@ Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::stri
     if (stbi_is_hdr_from_memory(bytes.data(), length)) {
         return decodeHdr(bytes, name);
     }
-    const std::vector<uint8_t> full = withFullBmpPalette(bytes);
+    const std::vector<uint8_t> full = withFullPalette(bytes);
     return decodeBytes(full.empty() ? bytes : full, name);
 }
 
