@@ -214,8 +214,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
             if (s.work[size_t(tile)] == TileWork::idle) {
                 continue;
             }
-            const TileResult result =
-                kernel(job, s.rectOf(gbuffer, tile), s.work[size_t(tile)]);
+            const TileResult result = kernel(job, s.rectOf(gbuffer, tile), s.work[size_t(tile)]);
             memory = {result.finished, result.changed,
                       s.work[size_t(tile)] == TileWork::still && !result.changed};
         }

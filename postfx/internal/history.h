@@ -9,8 +9,8 @@
 namespace still::taa {
 
 /// Planes of one frame's history. All share the image's stride (in elements).
-/// Invariant: mean · count + rest is the sum of the pixel's samples, and mean is that sum divided by
-/// count, rounded half up. |rest| ≤ 127 because count ≤ 255.
+/// Invariant: mean · count + rest is the sum of the pixel's samples, and mean is that sum divided
+/// by count, rounded half up. |rest| ≤ 127 because count ≤ 255.
 template <class U16, class I8, class U8>
 struct HistoryPointers {
     U16* mean[3] = {};  ///< red, green, blue in fx12: the image that is shown

@@ -33,8 +33,8 @@ bool clipToWindow(const ResolveJob& job, int x, int y, int rgb[3]) noexcept {
     for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
         for (int i = std::max(x - 1, 0); i <= std::min(x + 1, job.width - 1); ++i) {
             const ptrdiff_t at = j * job.stride + i;
-            const Ycc c = toYcc(job.now.colour[0][at], job.now.colour[1][at],
-                                job.now.colour[2][at]);
+            const Ycc c =
+                toYcc(job.now.colour[0][at], job.now.colour[1][at], job.now.colour[2][at]);
             for (int k = 0; k < 3; ++k) {
                 sum[k] += c.v[k];
                 squares[k] += c.v[k] * c.v[k];

@@ -35,6 +35,10 @@ bool stillProves(const Claim& claim, uint16_t stored_surface) {
     return !claim.job.camera_moved && claim.surface_rests && claim.job.restsNow(stored_surface);
 }
 
+bool apart(Motion a, Motion b) {
+    return std::abs(a.x_fx8 - b.x_fx8) + std::abs(a.y_fx8 - b.y_fx8) >= kApart;
+}
+
 /// The surface, depth and normal tests of a tap.
 Trust trustTap(const Claim& claim, ptrdiff_t at) {
     const HistoryIn& before = claim.job.before;
@@ -147,7 +151,7 @@ void blendWindow(const Claim& claim, int x, int y, int limit, Past& past) {
             }
         }
     }
-    if (n == 0) {
+    if (n < kWindowTaps) {
         return;
     }
     past.count = count;
@@ -242,7 +246,11 @@ Past findPast(const ResolveJob& job, const TileRect& tile, int x, int y,
         }
     }
     if (past.count == 0) {
-        blendWindow(claim, (px + 128) >> 8, (py + 128) >> 8, resampledCount(128, 128), past);
+        blendWindow(claim, (px + 128) >> 8, (py + 128) >> 8, kWindowCount, past);
+    }
+    if (claim.own_surface != claim.surface && apart(job.now.motion[centre], owner.motion)) {
+        past.count = std::min(past.count, kEdgeCount);
+        past.suspect = true;
     }
     return past;
 }

@@ -4,7 +4,8 @@
 //
 // Sources: Schied et al., "Spatiotemporal Variance-Guided Filtering" (HPG 2017), for per-tap tests
 // and the 3×3 fallback; Karis, "High-Quality Temporal Supersampling" (SIGGRAPH 2014), for motion
-// dilation; Catmull and Rom 1974. The tests by exact surface, expected depth and stillness are ours.
+// dilation; Catmull and Rom 1974. The tests by exact surface, expected depth and stillness are
+// ours.
 
 #include "postfx/internal/history.h"
 

@@ -30,8 +30,8 @@ void storeFirst(const ResolveJob& job, ptrdiff_t at) {
 void storeSum(const ResolveJob& job, ptrdiff_t at, const Past& past, int count) {
     const bool keep_rest = 2 * count >= past.count;
     for (int c = 0; c < 3; ++c) {
-        const Sum sum = addSample({past.mean[c], keep_rest ? past.rest[c] : 0}, count,
-                                  job.now.colour[c][at]);
+        const Sum sum =
+            addSample({past.mean[c], keep_rest ? past.rest[c] : 0}, count, job.now.colour[c][at]);
         job.next.mean[c][at] = uint16_t(sum.mean);
         job.next.rest[c][at] = int8_t(sum.rest);
     }

@@ -1,4 +1,6 @@
 #include "postfx/internal/resolve.h"
 namespace still::taa {
-TileKernel tileKernel(SimdTarget) { return resolveTileReference; }
+TileKernel tileKernel(SimdTarget) {
+    return resolveTileReference;
 }
+}  // namespace still::taa

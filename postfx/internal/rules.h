@@ -8,30 +8,27 @@
 
 namespace still::taa {
 
-#ifndef TUNE_DEPTH_TOL
-#define TUNE_DEPTH_TOL 32
-#endif
 /// Stored depth may differ from the expected one by this much (1 = 1/4096 … 1/2048 relative) …
-constexpr int kDepthTolerance = TUNE_DEPTH_TOL;
-#ifndef TUNE_SLOPE
-#define TUNE_SLOPE 3
-#endif
-/// … plus this multiple of the surface's own step towards its nearest neighbour: one for the jitter,
-/// one for the fraction of the motion, one for an owner that sits at its surface's rim.
-constexpr int kSlopeFactor = TUNE_SLOPE;
+constexpr int kDepthTolerance = 32;
+/// … plus this multiple of the surface's own step towards its nearest neighbour: one for the
+/// jitter, one for the fraction of the motion, one for an owner that sits at its surface's rim.
+constexpr int kSlopeFactor = 3;
 
-/// Bilinear weights sum to 65536. History is taken when at least this much of it is trusted.
-#ifndef TUNE_MINW
-#define TUNE_MINW 16384
-#endif
+/// Bilinear weights sum to 65536. History is taken when at least half of it is trusted.
 constexpr uint32_t kFullWeight = 65536;
-constexpr uint32_t kMinWeight = TUNE_MINW;
+constexpr uint32_t kMinWeight = 32768;
 
 /// Samples that history may stand for when its validity is only likely.
-#ifndef TUNE_SUSPECT
-#define TUNE_SUSPECT 6
-#endif
-constexpr int kSuspectCount = TUNE_SUSPECT;
+constexpr int kSuspectCount = 6;
+
+/// The same where a window shows two surfaces that move apart by at least kApart (1/256 pixel, both
+/// axes together): part of what the owner's motion brings along belongs to the other surface.
+constexpr int kEdgeCount = 4;
+constexpr int kApart = 64;
+
+/// Trusted pixels that a 3×3 window needs, and the samples that its mean stands for.
+constexpr int kWindowTaps = 5;
+constexpr int kWindowCount = 1;
 
 /// Resampled history carries this many fraction bits below fx12.
 constexpr int kFractionBits = 8;
@@ -55,22 +52,23 @@ constexpr Sum sumOf(int value, int count) {
     return {mean, roundShift((value - (mean << kFractionBits)) * count, kFractionBits)};
 }
 
-/// Catmull-Rom weights of the taps −1, 0, 1, 2 at fraction f/256; they sum to 1024.
+/// Weights of the taps −1, 0, 1, 2 at fraction f/256; they sum to 1024. Keys' cubic with slope
+/// −5/8: a little sharper than Catmull-Rom (−1/2), because history passes through it every frame.
 struct CubicWeights {
     int w[4];
 };
 constexpr int kCubicBits = 10;
 constexpr CubicWeights cubicWeights(int f) {
+    const int f1 = f << 16;  // fractions to the powers 1, 2, 3 in 2^-24
     const int f2 = f * f << 8;
     const int f3 = f * f * f;
-    const int f1 = f << 16;
-    const int before = roundShift(2 * f2 - f1 - f3, 15);
-    const int right = roundShift(f1 + 4 * f2 - 3 * f3, 15);
-    const int after = roundShift(f3 - f2, 15);
+    const int before = roundShift(-5 * (f3 - 2 * f2 + f1), 17);
+    const int right = roundShift(14 * f2 - 11 * f3 + 5 * f1, 17);
+    const int after = roundShift(5 * (f3 - f2), 17);
     return {{before, (1 << kCubicBits) - before - right - after, right, after}};
 }
 
-/// Rows of a Catmull-Rom are kept with 3 fraction bits, so that the columns fit in 32 bits.
+/// Rows of the 4×4 filter are kept with 3 fraction bits, so that the columns fit in 32 bits.
 constexpr int kCubicRowShift = kCubicBits - 3;
 constexpr int kCubicColumnShift = kCubicBits + 3 - kFractionBits;
 
@@ -102,13 +100,10 @@ constexpr bool similarNormals(uint16_t a, uint16_t b) {
 }
 
 /// Most samples that history may stand for after it was resampled at fraction (fx, fy)/256: the
-/// more the filter blurs, the sooner new samples must replace the old ones.
-#ifndef TUNE_CAPK
-#define TUNE_CAPK 5
-#endif
+/// more the filter blurs, the sooner new samples must replace the old ones. 3 … 19.
 constexpr int resampledCount(int fx, int fy) {
-    const int blur = fx * (256 - fx) + fy * (256 - fy);  // 0 … 32768
-    return TUNE_CAPK + 16384 * 1 / (blur + 256) ;
+    const int blur = (fx * (256 - fx) + fy * (256 - fy)) >> 8;  // 0 … 128
+    return 3 + 16 / (blur + 1);
 }
 
 }  // namespace still::taa
