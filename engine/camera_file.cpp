@@ -2,6 +2,7 @@
 #include <glm/matrix.hpp>
 
 #include "engine/internal/json.h"
+#include "engine/internal/obj_text.h"
 #include "engine/load.h"
 #include "rasterizer/fixed.h"
 
@@ -65,7 +66,7 @@ Result<CameraFile> loadCameraFile(const std::filesystem::path& file) {
     if (!tree) {
         return tl::make_unexpected(tree.error());
     }
-    JsonReport report{.file = file.string(), .error = {}, .warnings = {}};
+    JsonReport report{.file = shownPath(file), .error = {}, .warnings = {}};
     const JsonCursor root(*tree, report);
     root.expectKeys({"width", "height", "frames"}, {"name", "notes", "comment"});
     CameraFile cameras;

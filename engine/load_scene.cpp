@@ -1,4 +1,5 @@
 #include "engine/internal/obj.h"
+#include "engine/internal/obj_text.h"
 #include "engine/internal/scene_file.h"
 #include "engine/load.h"
 #include "engine/timeline.h"
@@ -33,7 +34,7 @@ Result<Scene> sceneFromObj(const std::filesystem::path& file) {
     scene.objects.push_back(std::move(object));
     scene.automatic_camera = true;
     if (surfaceCount(scene) > kMaxSurfaces) {
-        return fail(file.string() + ": too many groups and materials, expected at most " +
+        return fail(shownPath(file) + ": too many groups and materials, expected at most " +
                     std::to_string(kMaxSurfaces) + " surfaces");
     }
     return scene;
@@ -44,7 +45,7 @@ Result<Scene> sceneFromObj(const std::filesystem::path& file) {
 Result<Scene> loadScene(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
     if (extension != ".obj" && extension != ".json") {
-        return fail(file.string() + ": unknown kind of file, expected NAME.obj or NAME.json");
+        return fail(shownPath(file) + ": unknown kind of file, expected NAME.obj or NAME.json");
     }
     Result<Scene> scene = extension == ".obj" ? sceneFromObj(file) : loadSceneFile(file);
     if (scene && scene->automatic_camera) {

@@ -1,15 +1,17 @@
 #include "engine/internal/json.h"
 
-#include <fstream>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "engine/internal/obj_text.h"
 
 namespace still {
 namespace {
 
 constexpr size_t kMaxDepth = 32;
 constexpr size_t kMaxKeys = 1000;  // per object; each new key is compared with all before it
-constexpr std::streamoff kMaxBytes = std::streamoff(256) << 20;
+constexpr size_t kMaxBytes = size_t(256) << 20;
 
 std::string placeOf(std::string_view text, size_t offset) {
     size_t line = 1, column = 1;
@@ -18,6 +20,17 @@ std::string placeOf(std::string_view text, size_t offset) {
         column = c == '\n' ? 1 : column + 1;
     }
     return std::to_string(line) + ":" + std::to_string(column);
+}
+
+/// The library's message without its own name, its place, and the raw bytes it read last:
+/// "[json.exception.parse_error.101] parse error at line 1, column 2: WHAT; last read: …" → WHAT.
+std::string detailOf(std::string_view message) {
+    message.remove_prefix(std::min(message.find("] ") + 2, message.size()));
+    if (message.starts_with("parse error")) {
+        message.remove_prefix(std::min(message.find(": ") + 2, message.size()));
+    }
+    message = message.substr(0, message.find("; last read"));
+    return std::string(message);
 }
 
 /// Receives the parser's events and builds the tree; false stops the parser.
@@ -45,7 +58,8 @@ class TreeBuilder {
         }
         for (const auto& member : open_.back().members) {
             if (member.first == name) {
-                error_ = "\"" + name + "\" stands twice in one object, expected unique keys";
+                error_ =
+                    "\"" + shownText(name) + "\" stands twice in one object, expected unique keys";
                 return false;
             }
         }
@@ -53,11 +67,8 @@ class TreeBuilder {
         return true;
     }
     bool parse_error(size_t position, const std::string&, const nlohmann::json::exception& what) {
-        const std::string message = what.what();
-        const size_t detail = message.find(": ");
         // The library counts the offending character too, hence − 1.
-        error_ = placeOf(text_, position > 0 ? position - 1 : 0) + ": " +
-                 (detail == std::string::npos ? message : message.substr(detail + 2));
+        error_ = placeOf(text_, position > 0 ? position - 1 : 0) + ": " + detailOf(what.what());
         has_place_ = true;
         return false;
     }
@@ -98,23 +109,6 @@ class TreeBuilder {
     bool has_place_ = false;
 };
 
-Result<std::string> readText(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary | std::ios::ate);
-    const std::streamoff bytes = stream ? std::streamoff(stream.tellg()) : -1;
-    if (bytes < 0 || std::filesystem::is_directory(file)) {
-        return fail(file.string() + ": cannot read, expected a JSON file");
-    }
-    if (bytes > kMaxBytes) {
-        return fail(file.string() + ": too large, expected at most 256 MiB");
-    }
-    std::string text(size_t(bytes), '\0');
-    stream.seekg(0);
-    if (!stream.read(text.data(), bytes)) {
-        return fail(file.string() + ": cannot read to its end");
-    }
-    return text;
-}
-
 std::string shortNumber(double value) {
     std::ostringstream stream;
     stream.imbue(std::locale::classic());
@@ -131,7 +125,7 @@ std::string describe(const JsonValue& value) {
         case JsonValue::Type::number:
             return shortNumber(value.number);
         case JsonValue::Type::text:
-            return "\"" + value.text.substr(0, 40) + "\"";
+            return "\"" + shownText(value.text) + "\"";
         case JsonValue::Type::array:
             return "an array of " + std::to_string(value.items.size());
         case JsonValue::Type::object:
@@ -140,9 +134,10 @@ std::string describe(const JsonValue& value) {
     return "nothing";
 }
 
+/// A key as a token of a JSON pointer, on one line.
 std::string escaped(std::string_view key) {
     std::string token;
-    for (const char c : key) {
+    for (const char c : shownText(key)) {
         token += c == '~' ? "~0" : (c == '/' ? "~1" : std::string(1, c));
     }
     return token;
@@ -157,19 +152,22 @@ const JsonValue kNothing{};
 }  // namespace
 
 Result<JsonValue> readJson(const std::filesystem::path& file) {
-    // The parser's own exceptions go to parse_error(); this catches what is left (memory, paths).
+    // The parser's own exceptions go to parse_error(); this catches what is left (memory).
     try {
-        const Result<std::string> text = readText(file);
+        const Result<std::string> text = readFile(file);
         if (!text) {
             return tl::make_unexpected(text.error());
         }
+        if (text->size() > kMaxBytes) {
+            return fail(shownPath(file) + ": too large, expected at most 256 MiB");
+        }
         TreeBuilder builder(*text);
         if (!nlohmann::json::sax_parse(*text, &builder)) {
-            return fail(file.string() + builder.error());
+            return fail(shownPath(file) + builder.error());
         }
         return builder.takeRoot();
     } catch (const std::exception& error) {
-        return fail(file.string() + ": cannot read: " + error.what());
+        return fail(shownPath(file) + ": cannot be read: " + error.what());
     }
 }
 

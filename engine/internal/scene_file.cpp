@@ -6,6 +6,7 @@
 #include "engine/internal/json.h"
 #include "engine/internal/json_tracks.h"
 #include "engine/internal/obj.h"
+#include "engine/internal/obj_text.h"
 #include "engine/internal/tracks.h"
 #include "engine/shapes.h"
 #include "engine/timeline.h"
@@ -23,7 +24,7 @@ class SceneFileReader {
   public:
     SceneFileReader(const std::filesystem::path& file, const JsonValue& tree)
         : folder_(file.parent_path()),
-          report_{.file = file.string(), .error = {}, .warnings = {}},
+          report_{.file = shownPath(file), .error = {}, .warnings = {}},
           root_(tree, report_) {
         scene_.name = file.stem().string();
         scene_.lights = defaultLights();

@@ -181,10 +181,11 @@ TEST_CASE("scene_file: clip planes that are not given enclose the scene", "[unit
 }
 
 TEST_CASE("scene_file: broken text is refused with line and column", "[unit][scene_file]") {
-    CHECK(errorOf("{\"obj\": \"quad.obj\",\n \"cuts\": [1 2]}").find("scene.json:2:12: ") == 0);
+    CHECK(errorOf("{\"obj\": \"quad.obj\",\n \"cuts\": [1 2]}")
+              .find("scene.json:2:13: syntax error") == 0);
     CHECK(errorOf("").find("scene.json:1:1: ") == 0);
-    CHECK(errorOf("{\"obj\": NaN}").find("scene.json:1:10: ") == 0);
-    CHECK(errorOf("{\"obj\": 1e999}").find("scene.json:1:") == 0);
+    CHECK(errorOf("{\"obj\": NaN}").find("scene.json:1:9: ") == 0);
+    CHECK(errorOf("{\"obj\": 1e999}") == "scene.json:1:13: number overflow parsing '1e999'");
     CHECK(errorOf("{\"obj\": \"\xff\"}").find("scene.json:1:") == 0);
     CHECK(errorOf(std::string(100000, '[')).find("nested too deeply") != std::string::npos);
     CHECK(errorOf(R"({"obj": "quad.obj", "obj": "quad.obj"})").find("stands twice") !=
@@ -254,7 +255,7 @@ TEST_CASE("scene_file: wrong transforms are refused with their path", "[unit][sc
 }
 
 TEST_CASE("scene_file: a missing file and an unknown kind are refused", "[unit][scene_file]") {
-    CHECK(loadScene(kData / "none.json").error().message.find("none.json: cannot read") !=
+    CHECK(loadScene(kData / "none.json").error().message.find("none.json: no such file") !=
           std::string::npos);
     CHECK(loadScene(kData / "none.stl").error().message.find("expected NAME.obj or NAME.json") !=
           std::string::npos);
