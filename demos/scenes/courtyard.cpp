@@ -104,7 +104,7 @@ Scene makeCourtyard() {
     addPlants(scene, palette);
     addLantern(scene, palette);
     setLight(scene);
-    const CameraPose entrance = pose({-1.6, 1.75, 12.2}, {0.5, 2.5, -2.0}, 55);
+    const CameraPose entrance = pose({-2.0, 1.75, 11.5}, {0.8, 2.62, -2.0}, 55);
     setCamera(scene, entrance, 0.05, 800);
     scene.views = {{"entrance", entrance},
                    {"fence", pose({6.2, 1.6, 6.5}, {9.6, 1.7, 0.5}, 50)},

@@ -36,7 +36,7 @@ constexpr dvec3 kFountain{0.6, 0, -0.6};
 constexpr int kLoopFrames = 240;
 /// A band of plain stone crosses the court; the ball rolls on it, because a moving shadow needs a
 /// floor without pattern.
-constexpr double kPathFrom = 3.0, kPathTo = 4.5;
+constexpr double kPathFrom = 3.0, kPathTo = 4.5, kPathBorder = 0.07;
 
 /// The way sunlight travels, not yet of unit length.
 constexpr dvec3 kSun{-0.66, -0.60, -0.45};
@@ -58,7 +58,7 @@ std::array<Wing, 2> wings();
 
 /// Material numbers.
 struct Palette {
-    uint32_t court_floor, court_floor_shaded, walk_lit, walk_shaded, path, path_shaded;
+    uint32_t court_floor, court_floor_shaded, walk_lit, walk_shaded, path, path_shaded, path_border;
     uint32_t marble, stone, stone_shaded, brick, brick_shaded, ceiling, beam, clay, clay_under;
     uint32_t door, mesh_wire, metal, cable, pole_wood;
     uint32_t basin, water, bronze, knot, ball, pot, shrub, tree, grass, hill_near, hill_far;

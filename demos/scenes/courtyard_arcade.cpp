@@ -179,6 +179,20 @@ Mesh corniceMesh(const Wing& wing, const Palette& palette) {
     return out.takeWithTangents();
 }
 
+/// Triangle of wall under an end of the lean-to roof; `outward` is −1 or 1 along x.
+void addGable(MeshBuilder& out, double x, double outward) {
+    std::vector<dvec3> corners{
+        {x, kEaves, kWallHalf}, {x, kEaves, -kDepth}, {x, kWallTop - 0.1, -kDepth}};
+    if (outward < 0) {
+        std::swap(corners[1], corners[2]);
+    }
+    std::vector<dvec2> uvs;
+    for (const dvec3& p : corners) {
+        uvs.push_back(dvec2{-outward * p.z, p.y} / kBrickTile);
+    }
+    out.polygon(corners, uvs);
+}
+
 Mesh backWallMesh(const Wing& wing, const Palette& palette) {
     MeshBuilder out(palette.brick_shaded);
     const double from = wing.floor_from, to = wing.floor_to, length = to - from;
@@ -188,9 +202,11 @@ Mesh backWallMesh(const Wing& wing, const Palette& palette) {
             kBrickTile);
     if (wing.end_wall_left) {
         out.box({from - 0.4, -kFloorRise, -kDepth}, {from, kEaves, kWallHalf}, kBrickTile);
+        addGable(out, from - 0.4, -1);
     }
     if (wing.end_wall_right) {
         out.box({to, -kFloorRise, -kDepth}, {to + 0.4, kEaves, kWallHalf}, kBrickTile);
+        addGable(out, to + 0.4, 1);
     }
     out.useMaterial(palette.stone_shaded);
     const dvec3 dado{from, 0, -kDepth + kDadoProud}, up{0, kDadoHeight, 0};

@@ -219,9 +219,9 @@ void addPlants(Scene& scene, const Palette& palette) {
             glm::dvec4(place, 1.0);
     }
     const uint32_t cypress =
-        addMesh(scene, "cypress", treeMesh(palette, {0.95, 4.4, 0.95}, 0.8, 520, 0.75, 51));
+        addMesh(scene, "cypress", treeMesh(palette, {0.95, 4.4, 0.95}, 0.8, 760, 0.52, 51));
     const uint32_t oak =
-        addMesh(scene, "tree", treeMesh(palette, {2.5, 2.0, 2.5}, 2.0, 620, 0.85, 52));
+        addMesh(scene, "tree", treeMesh(palette, {2.5, 2.0, 2.5}, 2.0, 700, 0.72, 52));
     const auto plant = [&](const std::string& name, uint32_t mesh, const dvec3& at, double size) {
         addObject(scene, name, mesh).base = placed(at, dvec3{size});
     };

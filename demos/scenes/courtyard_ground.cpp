@@ -205,7 +205,8 @@ struct CourtPainter {
         const dvec3 south{0, 0, 1}, north{0, 0, -1};
         addFloorPolygon(checkered, clipped(polygon, north, -kPathFrom), kCheckerTile);
         addFloorPolygon(checkered, clipped(polygon, south, kPathTo), kCheckerTile);
-        addFloorPolygon(plain, clipped(clipped(polygon, south, kPathFrom), north, -kPathTo), 3.0);
+        const double from = kPathFrom + kPathBorder, to = kPathTo - kPathBorder;
+        addFloorPolygon(plain, clipped(clipped(polygon, south, from), north, -to), 3.0);
     }
     void shadow(const dvec3& foot, double radius, double y0, double y1) {
         add(onCourt(cylinderShadow(foot, radius, y0, y1)));
@@ -218,7 +219,7 @@ void addFountainShadows(CourtPainter& court) {
     court.shadow(kFountain, 0.24, 0.9, 2.1);
     court.shadow(kFountain, 1.0, 2.02, 2.16);
     court.shadow(kFountain, 0.17, 2.1, 2.6);
-    court.shadow(kFountain + dvec3{0, 0, 0}, 0.34, 2.75, 3.1);
+    court.shadow(kFountain, 0.34, 2.75, 3.1);
 }
 
 void addFenceShadows(CourtPainter& court) {
@@ -238,6 +239,10 @@ void addCourt(Scene& scene, const Palette& palette) {
     court.plain.useMaterial(palette.path);
     court.add(floorRectangle(-8, kFenceX, -9, 14, 0));
     court.checkered.useMaterial(palette.court_floor_shaded);
+    court.plain.useMaterial(palette.path_border);
+    for (const double z : {kPathFrom, kPathTo - kPathBorder}) {
+        addFloorPolygon(court.plain, floorRectangle(-8, kFenceX, z, z + kPathBorder, 0), 3.0);
+    }
     court.plain.useMaterial(palette.path_shaded);
     addFountainShadows(court);
     addFenceShadows(court);

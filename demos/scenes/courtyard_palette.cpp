@@ -70,6 +70,7 @@ void addFloors(Painter& add, Palette& p) {
     p.court_floor_shaded = add.textured(checker, shade(up, 0.95));
     const int32_t limestone = add.mottle({212, 194, 162}, {202, 183, 150}, 4, 9);
     p.path = add.textured(limestone);
+    p.path_border = add.plain({0.13, 0.105, 0.095});
     p.path_shaded = add.textured(limestone, shade(up, 0.95));
     const int32_t slabs = addTexture(add.scene, paintBond({.columns = 3,
                                                            .rows = 4,

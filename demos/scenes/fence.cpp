@@ -10,7 +10,7 @@ Scene makeFence() {
     scene.name = "fence";
     const int32_t bricks = addTexture(scene, paintBond({.seed = 14}, 256));
     MeshBuilder wall(addMaterial(scene, {.diffuse = {1, 1, 1}, .colour_texture = bricks}));
-    wall.rectangle({-7, -3, -2.5}, {14, 0, 0}, {0, 7, 0}, 1.2);
+    wall.rectangle({-9, -5, -2.5}, {18, 0, 0}, {0, 10, 0}, 1.2);
     addObject(scene, "wall", wall.take());
     const int32_t link = addTexture(scene, paintChainLink(4, 0.14, 128));
     MeshBuilder wire(addMaterial(

@@ -55,7 +55,7 @@ Texture paintRipples(double slope, uint32_t seed, int size);
 Texture paintSky(uint32_t seed, int width, int height);
 
 /// Chain link: wires along both diagonals, `cells` × `cells` meshes; `wire` is a wire's width as a
-/// share of a mesh's diagonal. The chain of levels ends where a wire is still about a texel wide:
+/// share of a mesh's diagonal. The chain of levels ends while a wire is still wider than a texel:
 /// an alpha test on anything coarser would show all or nothing instead of a share of the samples.
 AlphaTexture paintChainLink(int cells, double wire, int size);
 

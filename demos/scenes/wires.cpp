@@ -13,8 +13,9 @@ Scene makeWires() {
     // At 720 rows a pixel is 7 mm wide here; the wires go from a fifth of that to one pixel.
     MeshBuilder wires(addMaterial(scene, {.diffuse = {0.02f, 0.02f, 0.03f}}));
     for (int i = 0; i < 12; ++i) {
-        const double y = -2.2 + 0.35 * i, radius = 0.0007 + 0.00025 * i;
-        addCable(wires, {-5, y - 0.05 * i, 0}, {5, y + 0.5 - 0.11 * i, 0}, 0.05 * i, radius, 12, 4);
+        const double y = -2.4 + 0.35 * i, radius = 0.0007 + 0.00025 * i;
+        addCable(wires, {-5, y - 0.4 - 0.1 * i, 0}, {5, y + 1.0 + 0.15 * i, 0}, 0.05 * i, radius,
+                 12, 4);
     }
     addObject(scene, "wires", wires.take());
     setDaylight(scene);
