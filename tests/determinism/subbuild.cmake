@@ -16,7 +16,7 @@ function(run_or_fail)
     endif()
 endfunction()
 run_or_fail(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${BUILD_DIR} ${generator}
-            -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DSTILL_TESTS=ON
+            -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DSTILL_TESTS=ON -DSTILL_SUBBUILDS=OFF
             ${EXTRA_ARGS})
 run_or_fail(${CMAKE_COMMAND} --build ${BUILD_DIR} --target determinism --parallel)
 

@@ -115,6 +115,8 @@ double deepZ(DeepKind kind, Random& random) {
             return random.real(-0.4, 0.1);
         case DeepKind::across:
             return random.real(-60, 40);
+        case DeepKind::vast:
+            return random.real(-1, 1) * std::exp2(random.real(-4, 14));
         default:
             return random.real(0.01, 50);
     }

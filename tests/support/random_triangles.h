@@ -31,9 +31,10 @@ enum class DeepKind {
     near,      ///< about the near plane, some corners behind it
     across,    ///< from far behind the camera to far before it
     behind,    ///< nothing is visible
+    vast,      ///< from a hair's breadth to far beyond the far plane, in all directions
 };
 inline constexpr std::array kDeepKinds{DeepKind::in_front, DeepKind::near, DeepKind::across,
-                                       DeepKind::behind};
+                                       DeepKind::behind, DeepKind::vast};
 
 /// Width × height with the identity as projection, and a random jitter.
 FrameView flatView(int width, int height, Random& random);

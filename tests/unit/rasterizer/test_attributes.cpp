@@ -210,7 +210,8 @@ TEST_CASE("attributes: triangles in the plane agree with the oracle", "[attribut
 }
 
 TEST_CASE("attributes: triangles in perspective agree with the oracle", "[attributes]") {
-    const DeepKind kind = GENERATE(DeepKind::in_front, DeepKind::near, DeepKind::across);
+    const DeepKind kind =
+        GENERATE(DeepKind::in_front, DeepKind::near, DeepKind::across, DeepKind::vast);
     Random random(600 + uint64_t(kind));
     Worst worst;
     for (int round = 0; round < 25; ++round) {

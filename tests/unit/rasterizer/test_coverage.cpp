@@ -70,7 +70,7 @@ TEST_CASE("coverage: triangles in the plane agree with the oracle at every sampl
     for (int round = 0; round < 40 && c.first_error.empty(); ++round) {
         const FrameView view = flatView(random.integer(1, 150), random.integer(1, 90), random);
         TestScene scene;
-        const int count = kind == FlatKind::sub_pixel ? 60 : 12;
+        const int count = kind == FlatKind::sub_pixel ? 300 : 12;
         for (int k = 0; k < count; ++k) {
             addFlat(scene, view, kind, random);
         }
