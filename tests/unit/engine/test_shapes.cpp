@@ -59,7 +59,7 @@ TEST_CASE("shapes: every mesh is well formed with one part that covers it", "[en
         CHECK(mesh.z.size() == mesh.x.size());
         CHECK(mesh.attributes.size() == mesh.x.size());
         CHECK(std::all_of(mesh.indices.begin(), mesh.indices.end(),
-                          [&](uint32_t i) { return i < mesh.vertexCount(); }));
+                          [count = mesh.vertexCount()](uint32_t i) { return i < count; }));
         REQUIRE(mesh.parts.size() == 1);
         CHECK(mesh.parts[0].first_triangle == 0);
         CHECK(mesh.parts[0].triangle_count == mesh.triangleCount());
