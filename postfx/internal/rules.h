@@ -99,11 +99,14 @@ constexpr bool similarNormals(uint16_t a, uint16_t b) {
     return dot > 0 && (dot >> 3) * (dot >> 3) >= ((pp * 5) >> 6) * (qq >> 3);
 }
 
-/// Most samples that history may stand for after it was resampled at fraction (fx, fy)/256: the
-/// more the filter blurs, the sooner new samples must replace the old ones. 3 … 19.
-constexpr int resampledCount(int fx, int fy) {
-    const int blur = (fx * (256 - fx) + fy * (256 - fy)) >> 8;  // 0 … 128
+/// Most samples that history may stand for after it was resampled: the more the filter blurs, the
+/// sooner new samples must replace the old ones. 3 … 19.
+constexpr int resampledCount(int blur) {
     return 3 + 16 / (blur + 1);
+}
+/// At fraction (fx, fy)/256.
+constexpr int resampledCount(int fx, int fy) {
+    return resampledCount((fx * (256 - fx) + fy * (256 - fy)) >> 8);  // 0 … 128
 }
 
 }  // namespace still::taa
