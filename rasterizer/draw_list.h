@@ -55,7 +55,9 @@ struct TextureLevel {
 /// Three 10-bit channels in a word (r in bits 0–9, g 10–19, b 20–29), row 0 at the top.
 /// Colour: linear light = (c / 1023)², i.e. gamma 2.0, which keeps darks that 8-bit linear loses
 /// and decodes with one multiplication. Normal map: component = c · 2/1023 − 1.
-/// Level 0 is the image; each further level halves both sizes (floor, at least 1) down to 1×1.
+/// Level 0 is the image; each further level halves both sizes (floor, at least 1). A chain ends at
+/// 1×1 or earlier: where coarser levels would be wrong, the last one is used for all distances
+/// beyond.
 struct Texture {
     Wrap wrap = Wrap::repeat;
     std::vector<TextureLevel> levels;

@@ -1,6 +1,7 @@
 #include "rasterizer/internal/binner.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rasterizer/fixed.h"
 #include "rasterizer/internal/clip.h"
@@ -86,13 +87,13 @@ class ChunkBuilder {
             corners[k] = transformVertex(job.clip, job.x[i], job.y[i], job.z[i]);
         }
         ClippedVertex polygon[kMaxClippedCorners];
-        const float guard_x = job.guard_fx8 / job.scale_x_fx8;
-        const float guard_y = -job.guard_fx8 / job.scale_y_fx8;
+        const double guard_x = double(job.guard_fx8) / double(job.scale_x_fx8);
+        const double guard_y = -double(job.guard_fx8) / double(job.scale_y_fx8);
         const int count = clipTriangle(corners, guard_x, guard_y, polygon);
         ++chunk_.counters.clipped;
         ScreenVertex screen[kMaxClippedCorners];
         for (int k = 0; k < count; ++k) {
-            screen[k] = projectClipped(polygon[k].position);
+            screen[k] = projectClipped(polygon[k]);
         }
         for (int k = 2; k < count; ++k) {
             const int fan[3] = {0, k - 1, k};
@@ -100,22 +101,25 @@ class ChunkBuilder {
             ClipBarycentrics b;
             for (int j = 0; j < 3; ++j) {
                 v[j] = screen[fan[j]];
-                std::copy_n(polygon[fan[j]].b, 3, b.b[j]);
+                std::transform(polygon[fan[j]].b, polygon[fan[j]].b + 3, b.b[j],
+                               [](double v) { return float(v); });
             }
             chunk_.clips.push_back(b);
             add(v, triangle, int32_t(chunk_.clips.size()) - 1);
         }
     }
 
-    /// As projectVertex(), but a corner that rounding left a hair outside is taken as it is.
-    ScreenVertex projectClipped(const ClipVertex& p) const {
+    /// As projectVertex(), but in double, and a corner that rounding left a hair outside is taken.
+    ScreenVertex projectClipped(const ClippedVertex& p) const {
         const VertexJob& job = input_.projection;
-        const float r = 1.0f / std::max(p.w, 1e-20f);
-        const float limit = job.guard_fx8 + float(kSubpixelOne);
-        const float sx = std::clamp((p.x * r) * job.scale_x_fx8, -limit, limit);
-        const float sy = std::clamp((p.y * r) * job.scale_y_fx8, -limit, limit);
-        return {roundToInt(sx) + job.centre_x_fx8, roundToInt(sy) + job.centre_y_fx8,
-                std::min(p.z * r, 1.0f), r, 0};
+        const double r = 1.0 / std::max(p.w, 1e-20);
+        const double limit = double(job.guard_fx8) + kSubpixelOne;
+        const auto snap = [&](double v, float scale) {
+            return int32_t(std::floor(std::clamp(v * r * double(scale), -limit, limit) + 0.5));
+        };
+        return {snap(p.x, job.scale_x_fx8) + job.centre_x_fx8,
+                snap(p.y, job.scale_y_fx8) + job.centre_y_fx8, std::min(float(p.z * r), 1.0f),
+                float(r), 0};
     }
 
     /// A tile is left out when one edge has all its samples outside.

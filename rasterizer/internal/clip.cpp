@@ -9,7 +9,7 @@ namespace {
 enum Plane { kNear, kLeft, kRight, kBottom, kTop, kPlanes };
 
 /// ≥ 0 inside.
-float distance(const ClipVertex& v, Plane plane, float guard_x, float guard_y) {
+double distance(const ClippedVertex& v, Plane plane, double guard_x, double guard_y) {
     switch (plane) {
         case kNear:
             return v.w - v.z;
@@ -24,14 +24,13 @@ float distance(const ClipVertex& v, Plane plane, float guard_x, float guard_y) {
     }
 }
 
-float lerp(float in, float out, float t) {
+double lerp(double in, double out, double t) {
     return in + (out - in) * t;
 }
 
-ClippedVertex between(const ClippedVertex& in, const ClippedVertex& out, float t) {
-    ClippedVertex r;
-    r.position = {lerp(in.position.x, out.position.x, t), lerp(in.position.y, out.position.y, t),
-                  lerp(in.position.z, out.position.z, t), lerp(in.position.w, out.position.w, t)};
+ClippedVertex between(const ClippedVertex& in, const ClippedVertex& out, double t) {
+    ClippedVertex r{
+        lerp(in.x, out.x, t), lerp(in.y, out.y, t), lerp(in.z, out.z, t), lerp(in.w, out.w, t), {}};
     for (int k = 0; k < 3; ++k) {
         r.b[k] = lerp(in.b[k], out.b[k], t);
     }
@@ -40,15 +39,13 @@ ClippedVertex between(const ClippedVertex& in, const ClippedVertex& out, float t
 
 }  // namespace
 
-int clipTriangle(const ClipVertex corners[3], float guard_x, float guard_y,
+int clipTriangle(const ClipVertex corners[3], double guard_x, double guard_y,
                  ClippedVertex out[kMaxClippedCorners]) {
     ClippedVertex polygon[kMaxClippedCorners];
     int count = 3;
     for (int k = 0; k < 3; ++k) {
-        out[k].position = corners[k];
-        for (int j = 0; j < 3; ++j) {
-            out[k].b[j] = j == k ? 1.0f : 0.0f;
-        }
+        const ClipVertex& c = corners[k];
+        out[k] = {c.x, c.y, c.z, c.w, {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0}};
     }
     for (int plane = 0; plane < kPlanes && count >= 3; ++plane) {
         std::memcpy(polygon, out, sizeof(polygon));
@@ -56,14 +53,14 @@ int clipTriangle(const ClipVertex corners[3], float guard_x, float guard_y,
         for (int k = 0; k < count; ++k) {
             const ClippedVertex& a = polygon[k];
             const ClippedVertex& b = polygon[k + 1 == count ? 0 : k + 1];
-            const float da = distance(a.position, Plane(plane), guard_x, guard_y);
-            const float db = distance(b.position, Plane(plane), guard_x, guard_y);
-            if (da >= 0.0f) {
+            const double da = distance(a, Plane(plane), guard_x, guard_y);
+            const double db = distance(b, Plane(plane), guard_x, guard_y);
+            if (da >= 0.0) {
                 out[kept++] = a;
             }
-            if ((da >= 0.0f) != (db >= 0.0f)) {
+            if ((da >= 0.0) != (db >= 0.0)) {
                 out[kept++] =
-                    da >= 0.0f ? between(a, b, da / (da - db)) : between(b, a, db / (db - da));
+                    da >= 0.0 ? between(a, b, da / (da - db)) : between(b, a, db / (db - da));
             }
         }
         count = kept;

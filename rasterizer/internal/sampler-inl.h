@@ -191,15 +191,28 @@ HWY_INLINE void texelPair(FVec position, IVec size, Wrap wrap, IVec& i0, IVec& i
     i1 = hn::Max(hn::Min(i1, last), splatInt(0));
 }
 
-/// A level per lane: width, height and offset are gathered from the chain.
-HWY_INLINE LaneFootprint footprint(FVec u, FVec v, const std::vector<TextureLevel>& levels,
-                                   IVec level, Wrap wrap) {
+/// Size and place of each lane's mip level.
+struct LaneLevel {
+    IVec width, height, offset;
+};
+
+HWY_INLINE LaneLevel levelOf(const std::vector<TextureLevel>& levels, IVec level) {
+    const int32_t first = hn::GetLane(level);
+    if (hn::AllTrue(ITag(), hn::Eq(level, splatInt(first)))) {
+        const TextureLevel& l = levels[size_t(first)];
+        return {splatInt(int32_t(l.width)), splatInt(int32_t(l.height)),
+                splatInt(int32_t(l.offset))};
+    }
     static_assert(sizeof(TextureLevel) == 12);
     const int32_t* fields = reinterpret_cast<const int32_t*>(levels.data());
     const IVec at = hn::Mul(level, splatInt(3));
-    const IVec width = hn::GatherIndex(ITag(), fields, at);
-    const IVec height = hn::GatherIndex(ITag(), fields + 1, at);
-    const IVec offset = hn::GatherIndex(ITag(), fields + 2, at);
+    return {hn::GatherIndex(ITag(), fields, at), hn::GatherIndex(ITag(), fields + 1, at),
+            hn::GatherIndex(ITag(), fields + 2, at)};
+}
+
+HWY_INLINE LaneFootprint footprint(FVec u, FVec v, const std::vector<TextureLevel>& levels,
+                                   IVec level, Wrap wrap) {
+    const auto [width, height, offset] = levelOf(levels, level);
     const FVec half = splat(0.5f);
     LaneFootprint f;
     IVec x0, x1, y0, y1;
@@ -249,6 +262,7 @@ HWY_INLINE Vec3 sampleLevel(const Texture& texture, IVec level, FVec u, FVec v) 
 struct LaneMip {
     IVec level0, level1;
     FVec fraction;
+    bool single;  ///< all fractions are zero (magnified textures): the second level adds nothing
 };
 
 HWY_INLINE LaneMip mipOf(const LaneTexture& c, const std::vector<TextureLevel>& levels) {
@@ -256,7 +270,9 @@ HWY_INLINE LaneMip mipOf(const LaneTexture& c, const std::vector<TextureLevel>& 
     LaneMip m;
     m.level0 = hn::ShiftRight<8>(lod);
     m.level1 = hn::Min(hn::Add(m.level0, splatInt(1)), splatInt(int32_t(levels.size()) - 1));
-    m.fraction = hn::Mul(hn::ConvertTo(FTag(), hn::And(lod, splatInt(255))), splat(1.0f / 256.0f));
+    const IVec fraction = hn::And(lod, splatInt(255));
+    m.single = hn::AllTrue(ITag(), hn::Eq(fraction, splatInt(0)));
+    m.fraction = hn::Mul(hn::ConvertTo(FTag(), fraction), splat(1.0f / 256.0f));
     return m;
 }
 
@@ -264,6 +280,9 @@ template <bool kSquare>
 HWY_INLINE Vec3 sampleTexture(const Texture& texture, const LaneTexture& c) {
     const LaneMip m = mipOf(c, texture.levels);
     const Vec3 a = sampleLevel<kSquare>(texture, m.level0, c.u, c.v);
+    if (m.single) {
+        return a;
+    }
     const Vec3 b = sampleLevel<kSquare>(texture, m.level1, c.u, c.v);
     return {mix(a.x, b.x, m.fraction), mix(a.y, b.y, m.fraction), mix(a.z, b.z, m.fraction)};
 }
@@ -282,9 +301,12 @@ HWY_INLINE FVec sampleAlphaLevel(const AlphaTexture& texture, IVec level, FVec u
 
 HWY_INLINE FVec sampleAlpha(const AlphaTexture& texture, const LaneTexture& c) {
     const LaneMip m = mipOf(c, texture.levels);
-    const FVec a = sampleAlphaLevel(texture, m.level0, c.u, c.v);
-    const FVec b = sampleAlphaLevel(texture, m.level1, c.u, c.v);
-    return hn::Mul(mix(a, b, m.fraction), splat(1.0f / 255.0f));
+    FVec alpha = sampleAlphaLevel(texture, m.level0, c.u, c.v);
+    if (!m.single) {
+        const FVec coarser = sampleAlphaLevel(texture, m.level1, c.u, c.v);
+        alpha = mix(alpha, coarser, m.fraction);
+    }
+    return hn::Mul(alpha, splat(1.0f / 255.0f));
 }
 
 }  // namespace HWY_NAMESPACE

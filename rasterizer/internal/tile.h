@@ -41,7 +41,6 @@ struct TileScratch {
 
 /// Renders tile (tx, ty).
 void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
-                const RasterSettings& settings, int tx, int ty, GBuffer& out,
-                TileScratch& scratch);
+                const RasterSettings& settings, int tx, int ty, GBuffer& out, TileScratch& scratch);
 
 }  // namespace still::internal
