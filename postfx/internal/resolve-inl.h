@@ -10,136 +10,6 @@ HWY_BEFORE_NAMESPACE();
 namespace still::taa {
 namespace HWY_NAMESPACE {
 
-/// A group's colours while it is worked on.
-struct Sums {
-    V32 mean[3];
-    VI32 rest[3];
-    V32 count;
-};
-
-HWY_INLINE Sums loadSums(const HistoryIn& in, ptrdiff_t at) {
-    Sums s;
-    for (int c = 0; c < 3; ++c) {
-        s.mean[c] = load16(in.mean[c] + at);
-        s.rest[c] = loadI8(in.rest[c] + at);
-    }
-    s.count = load8(in.count + at);
-    return s;
-}
-
-HWY_INLINE void storeSums(const HistoryOut& out, ptrdiff_t at, const Sums& s) {
-    for (int c = 0; c < 3; ++c) {
-        store16(s.mean[c], out.mean[c] + at);
-        storeI8(s.rest[c], out.rest[c] + at);
-    }
-    store8(s.count, out.count + at);
-}
-
-HWY_INLINE Sums choose(Mask32 mask, const Sums& yes, const Sums& no) {
-    const auto signed_mask = hn::RebindMask(DI32(), mask);
-    Sums s;
-    for (int c = 0; c < 3; ++c) {
-        s.mean[c] = hn::IfThenElse(mask, yes.mean[c], no.mean[c]);
-        s.rest[c] = hn::IfThenElse(signed_mask, yes.rest[c], no.rest[c]);
-    }
-    s.count = hn::IfThenElse(mask, yes.count, no.count);
-    return s;
-}
-
-/// Adds this frame's samples to sums that stand for `count` ≥ 1 samples.
-HWY_INLINE Sums grow(const ResolveJob& job, ptrdiff_t at, const Sums& past, V32 count) {
-    const Growth growth = growthOf(count);
-    Sums s = past;
-    for (int c = 0; c < 3; ++c) {
-        addSamples(growth, load16(job.now.colour[c] + at), s.mean[c], s.rest[c]);
-    }
-    s.count = asUnsigned(growth.grown);
-    return s;
-}
-
-/// Lanes of the group that are pixels of the tile.
-HWY_INLINE Mask32 lanesBefore(int end) {
-    const DI32 di;
-    return hn::RebindMask(D32(), hn::Lt(hn::Iota(di, 0), hn::Set(di, end)));
-}
-
-HWY_INLINE Mask32 notYet(V32 count, int cap) {
-    return hn::RebindMask(D32(), hn::Lt(asSigned(count), hn::Set(DI32(), cap)));
-}
-
-/// Folds a group's outcome into the tile's.
-HWY_INLINE void report(TileResult& result, const ResolveJob& job, Mask32 pixels, V32 count,
-                       Mask32 kept) {
-    const D32 d;
-    result.finished &= hn::AllFalse(d, hn::And(pixels, notYet(count, job.sample_cap)));
-    result.changed |= !hn::AllFalse(d, hn::AndNot(kept, pixels));
-}
-
-// ---- still tiles -----------------------------------------------------------------------------
-
-HWY_INLINE void copyOwners(const ResolveJob& job, ptrdiff_t at, int count) {
-    const size_t bytes = size_t(count) * sizeof(uint16_t);
-    std::memcpy(job.next.surface + at, job.before.surface + at, bytes);
-    std::memcpy(job.next.depth + at, job.before.depth + at, bytes);
-    std::memcpy(job.next.normal + at, job.before.normal + at, bytes);
-    std::memcpy(job.next.own + at, job.before.own + at, bytes);
-}
-
-HWY_ATTR TileResult resolveStill(const ResolveJob& job, const TileRect& tile) {
-    const int lanes = int(hn::Lanes(D32()));
-    TileResult result{true, false};
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        copyOwners(job, y * job.stride + tile.x0, tile.x1 - tile.x0);
-        for (int x = tile.x0; x < tile.x1; x += lanes) {
-            const ptrdiff_t at = y * job.stride + x;
-            const Mask32 pixels = lanesBefore(tile.x1 - x);
-            const Sums past = loadSums(job.before, at);
-            const Mask32 grows = hn::And(pixels, notYet(past.count, job.sample_cap));
-            Sums sums = past;
-            if (!hn::AllFalse(D32(), grows)) {
-                const V32 count = hn::IfThenElse(grows, past.count, hn::Set(D32(), 1));
-                sums = choose(grows, grow(job, at, past, count), past);
-            }
-            storeSums(job.next, at, sums);
-            report(result, job, pixels, sums.count, hn::Not(grows));
-        }
-    }
-    return result;
-}
-
-// ---- every other tile ------------------------------------------------------------------------
-
-HWY_INLINE void storeOwners(const ResolveJob& job, ptrdiff_t at, const Owners& owners, V32 depth,
-                            V32 own_surface) {
-    store16(hn::And(owners.id, hn::Set(D32(), kSurfaceMask)), job.next.surface + at);
-    store16(depth, job.next.depth + at);
-    store16(owners.normal, job.next.normal + at);
-    store16(own_surface, job.next.own + at);
-}
-
-HWY_ATTR TileResult resolveFresh(const ResolveJob& job, const TileRect& tile) {
-    const D32 d;
-    const int lanes = int(hn::Lanes(d));
-    OwnerStrip strip;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        fillStrip(job, tile, y, strip);
-        for (int x = tile.x0; x < tile.x1; x += lanes) {
-            const ptrdiff_t at = y * job.stride + x;
-            const Owners owners = ownersOf(strip, x - tile.x0);
-            const V32 own = hn::And(load16(job.now.id + at), hn::Set(d, kSurfaceMask));
-            storeOwners(job, at, owners, clampedLogDepth(owners.depth), own);
-            Sums sums;
-            for (int c = 0; c < 3; ++c) {
-                sums.mean[c] = load16(job.now.colour[c] + at);
-                sums.rest[c] = hn::Zero(DI32());
-            }
-            sums.count = hn::Set(d, 1);
-            storeSums(job.next, at, sums);
-        }
-    }
-    return {job.sample_cap <= 1, true};
-}
-
 /// One group of lanes of a general tile.
 struct Group {
     const ResolveJob& job;
@@ -409,11 +279,37 @@ HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const 
     }
 }
 
+/// The row of owners below is already loaded; history is expected where the row's middle comes
+/// from.
+HWY_INLINE void prefetchRow(const ResolveJob& job, const TileRect& tile, int y) {
+    const int ahead = std::min(y + kRowsAhead, job.height - 1);
+    const int below = std::min(ahead + 1, job.height - 1);
+    const ptrdiff_t now = below * job.stride + tile.x0;
+    for (int quarter = 0; quarter < kTileSize; quarter += 16) {
+        hwy::Prefetch(job.now.depth + now + quarter);
+        hwy::Prefetch(job.now.motion + now + quarter);
+        if (job.now.normal != nullptr) {
+            hwy::Prefetch(job.now.normal + now + quarter);
+        }
+    }
+    for (int half = 0; half < kTileSize; half += 32) {
+        hwy::Prefetch(job.now.id + now + half);
+        hwy::Prefetch(job.now.depth_before + now + half);
+    }
+    const Motion motion = job.now.motion[y * job.stride + (tile.x0 + tile.x1) / 2];
+    const int from_x = std::clamp(tile.x0 + (motion.x_fx8 >> 8), 0, job.width - 1);
+    const int from_y = std::clamp(ahead + 2 + (motion.y_fx8 >> 8), 0, job.height - 1);
+    const ptrdiff_t from = from_y * job.stride + from_x;
+    prefetchPixels(job, ahead * job.stride + tile.x0, from);
+    prefetchOwners(job, ahead * job.stride + tile.x0, from);
+}
+
 HWY_ATTR TileResult resolveGeneral(const ResolveJob& job, const TileRect& tile) {
     const int lanes = int(hn::Lanes(D32()));
     TileResult result{true, false};
     OwnerStrip strip;
     for (int y = tile.y0; y < tile.y1; ++y) {
+        prefetchRow(job, tile, y);
         fillStrip(job, tile, y, strip);
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             resolveGroup(job, tile, strip, x, y, result);

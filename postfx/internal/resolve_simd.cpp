@@ -8,8 +8,10 @@
 #define HWY_TARGET_INCLUDE "postfx/internal/resolve_simd.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target must come before highway.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -22,6 +24,8 @@
 // clang-format off
 #include "postfx/internal/lanes-inl.h"
 #include "postfx/internal/owner-inl.h"
+#include "postfx/internal/sums-inl.h"
+#include "postfx/internal/still-inl.h"
 #include "postfx/internal/resolve-inl.h"
 // clang-format on
 #endif
