@@ -6,6 +6,7 @@
 #include "demos/stillframe/name_pattern.h"
 #include "demos/stillframe/png.h"
 #include "demos/stillframe/report.h"
+#include "demos/stillframe/sink.h"
 #include "engine/image_file.h"
 #include "postfx/metrics.h"
 
@@ -39,8 +40,10 @@ Outcome<Names> parseNames(const CompareOptions& options) {
     if (!diff) {
         return tl::make_unexpected(diff.error());
     }
-    if (diff->numbered() && !a->numbered()) {
-        return usageError("--diff: " + options.diff + ": expected a name without a frame number");
+    const auto kind = sinkKind(options.diff);
+    if (!kind || *kind != SinkKind::png || (diff->numbered() && !a->numbered())) {
+        return usageError("--diff: " + options.diff + ": expected NAME.png" +
+                          (a->numbered() ? "" : " without a frame number"));
     }
     names.diff = a->numbered() ? diff->withNumber() : *diff;
     return names;

@@ -1,6 +1,7 @@
 #include "demos/stillframe/job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 #include <thread>
@@ -38,6 +39,9 @@ Outcome<void> checkCombination(const Job& job) {
     const bool confidence = std::count(job.dump.begin(), job.dump.end(), DumpPlane::confidence) > 0;
     if (confidence && job.settings.anti_aliasing != AntiAliasing::taa) {
         return usageError("--dump: confidence exists with --anti-aliasing taa only");
+    }
+    if (!std::isfinite(options.orbit_deg)) {
+        return usageError("--orbit: expected a finite number of degrees");
     }
     if (!options.cameras.empty() && (!options.view.empty() || options.orbit_deg != 0)) {
         return usageError("--cameras: excludes --view and --orbit");
@@ -96,9 +100,10 @@ Outcome<void> readFiles(Job& job) {
         .and_then([&] { return readCameras(job); });
 }
 
-/// The loader frames for 16:9 and leaves other shapes to us.
+/// The loader frames for 16:9 and leaves other shapes to us. An empty scene has no camera keys.
 void frameForAspect(Scene& scene, Size size) {
-    if (scene.automatic_camera) {
+    if (scene.automatic_camera && !scene.camera.eye.keys.empty() &&
+        !scene.camera.target.keys.empty()) {
         const glm::dvec3 direction =
             scene.camera.eye.keys[0].value - scene.camera.target.keys[0].value;
         frameScene(scene, direction, double(size.width) / size.height);

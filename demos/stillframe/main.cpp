@@ -1,8 +1,10 @@
 // The command line. CLI11 is included here and nowhere else: it is slow to compile.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <new>
+#include <string>
 
 #include "demos/stillframe/compare.h"
 #include "demos/stillframe/render.h"
@@ -14,76 +16,122 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 ok, 1 images differ or a check failed, 2 usage, 3 cannot read or write.";
 constexpr int kMaxFrames = 1000000;
 
+void addPictureOptions(CLI::App& render, RenderOptions& o) {
+    render
+        .add_option("-o,--output", o.output,
+                    "NAME.png; several frames become NAME.0000.png and so on, or\n"
+                    "put {frame}, {frame:4} or %04d where the number goes.\n"
+                    "NAME.gif, NAME.mp4 (needs the ffmpeg program).\n"
+                    "- writes a PNG to standard output")
+        ->type_name("NAME");
+    render
+        .add_option_function<std::string>(
+            "--resolution",
+            [&o](const std::string& text) {
+                const auto size = parseResolution(text);
+                if (!size) {
+                    throw CLI::ValidationError(size.error().message);
+                }
+                o.resolution = *size;
+            },
+            "Also WIDTH,HEIGHT; default 1280x720, or the camera file's")
+        ->type_name("WIDTHxHEIGHT");
+    render
+        .add_option("--anti-aliasing,--aa", o.anti_aliasing,
+                    "none; taa: temporal, the default; ssaa:N: N samples a pixel,\n"
+                    "the reference")
+        ->type_name("MODE");
+    render
+        .add_option("--samples", o.samples,
+                    "Samples of a finished picture, which is what one frame of a\n"
+                    "scene without motion becomes; default 64")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+    render.add_option("--tone-map", o.tone_map, "none (default) or reinhard")
+        ->check(CLI::IsMember({"none", "reinhard"}))
+        ->type_name("NAME");
+    render
+        .add_option("--dump", o.dump,
+                    "Also write planes as NAME.PLANE.png: color, depth, normal,\n"
+                    "motion, id, confidence (several with commas)")
+        ->type_name("PLANES");
+}
+
+void addTimeOptions(CLI::App& render, RenderOptions& o) {
+    render.add_option("--frames", o.frames, "How many; default 1, or the camera file's")
+        ->check(CLI::Range(1, kMaxFrames))
+        ->type_name("N");
+    render.add_option("--start", o.start, "The first frame, default 0")
+        ->check(CLI::Range(0, kMaxFrames))
+        ->type_name("K");
+    render.add_option("--fps", o.fps, "Speed of GIF and MP4, default 30")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    render.add_option("--cameras", o.cameras, "JSON with a view and a projection for each frame")
+        ->type_name("FILE");
+    render.add_option("--view", o.view, "One of the scene's views")->type_name("NAME");
+    render
+        .add_option("--orbit", o.orbit_deg,
+                    "The camera circles its target by so much over the frames")
+        ->check(CLI::Range(-36000.0, 36000.0))
+        ->type_name("DEGREES");
+}
+
+void addMachineOptions(CLI::App& render, RenderOptions& o) {
+    render.add_option("--threads", o.threads, "Default: all cores. The bytes are the same")
+        ->check(CLI::Range(1, 256))
+        ->type_name("N");
+    render
+        .add_option("--simd", o.simd, "Instruction set, default the best. The bytes are the same")
+        ->type_name("TARGET");
+    render
+        .add_option("--shading", o.shading, "deferred (default) or forward. The bytes are the same")
+        ->check(CLI::IsMember({"deferred", "forward"}))
+        ->type_name("NAME");
+    render.add_flag("--hash", o.hash, "Print 64-bit hashes of all planes of each frame");
+    render.add_flag("--json", o.json, "Print times, memory and hashes as one JSON object");
+}
+
 CLI::App* addRender(CLI::App& app, RenderOptions& o) {
     CLI::App* render = app.add_subcommand("render", "Render frames of a scene");
-    render->add_option("scene", o.scene, "FILE.obj, FILE.json or builtin:NAME (builtin:courtyard)")
-        ->required();
-    render->add_option("-o,--output", o.output,
-                       "NAME.png (several frames: NAME.0000.png …, or put {frame}, {frame:4} or "
-                       "%04d into the name), NAME.gif, NAME.mp4 (needs ffmpeg), or - for a PNG on "
-                       "standard output");
-    render->add_option_function<std::string>(
-        "--resolution",
-        [&o](const std::string& text) {
-            const auto size = parseResolution(text);
-            if (!size) {
-                throw CLI::ValidationError(size.error().message);
-            }
-            o.resolution = *size;
-        },
-        "WIDTHxHEIGHT or WIDTH,HEIGHT, default 1280x720 or the camera file's");
-    render->add_option("--frames", o.frames, "Number of frames, default 1 or the camera file's")
-        ->check(CLI::Range(1, kMaxFrames));
-    render->add_option("--start", o.start, "First frame")->check(CLI::Range(0, kMaxFrames));
-    render->add_option("--cameras", o.cameras, "JSON file with a view and a projection per frame");
-    render->add_option("--view", o.view, "Camera out of the scene's views");
     render
-        ->add_option("--orbit", o.orbit_deg,
-                     "Degrees that the camera circles its target by over the frames")
-        ->check(CLI::Range(-36000.0, 36000.0));
-    render->add_option("--anti-aliasing,--aa", o.anti_aliasing,
-                       "none, taa (temporal, the default), or ssaa:N (N samples, the reference)");
-    render
-        ->add_option("--samples", o.samples,
-                     "Samples of a finished picture, i.e. one frame of a still scene; default 64")
-        ->check(CLI::Range(1, 4096));
-    render->add_option("--dump", o.dump,
-                       "Also write planes as NAME.PLANE.png: color,depth,normal,motion,id,"
-                       "confidence");
-    render->add_option("--threads", o.threads, "Threads, default all cores")
-        ->check(CLI::Range(1, 256));
-    render->add_option("--simd", o.simd, "Instruction set, default the best; same bytes on all");
-    render->add_option("--shading", o.shading, "deferred (default) or forward; same bytes")
-        ->check(CLI::IsMember({"deferred", "forward"}));
-    render->add_option("--tone-map", o.tone_map, "none (default) or reinhard")
-        ->check(CLI::IsMember({"none", "reinhard"}));
-    render->add_option("--fps", o.fps, "Frames per second of GIF and MP4, default 30")
-        ->check(CLI::Range(1, 1000));
-    render->add_flag("--hash", o.hash, "Print a 64-bit hash of every plane of every frame");
-    render->add_flag("--json", o.json, "Print times, memory and hashes as one JSON object");
+        ->add_option("SCENE", o.scene, "FILE.obj, FILE.json or builtin:NAME, as builtin:courtyard")
+        ->required()
+        ->type_name("");
+    addPictureOptions(*render, o);
+    addTimeOptions(*render, o);
+    addMachineOptions(*render, o);
     return render;
 }
 
 CLI::App* addCompare(CLI::App& app, CompareOptions& o) {
     CLI::App* compare = app.add_subcommand(
         "compare", "Compare two pictures, or two frame patterns like a.{frame}.png");
-    compare->add_option("A", o.a, "The expected picture or pattern")->required();
-    compare->add_option("B", o.b, "The other one; must have all frames of A")->required();
-    compare->add_option("--diff", o.diff, "Write a picture of the differences");
+    compare->add_option("A", o.a, "The expected picture or pattern")->required()->type_name("");
+    compare->add_option("B", o.b, "The other one; it must have all frames of A")
+        ->required()
+        ->type_name("");
+    compare->add_option("--diff", o.diff, "Write a picture of the differences")
+        ->type_name("NAME.png");
     compare->add_flag("--exact", o.exact, "List the first differing pixels");
     compare->add_flag("--json", o.json,
-                      "Print {\"psnr\" (null when identical), \"ssim\", \"max_difference\", "
-                      "\"identical\"}");
+                      "Print psnr (null when identical), ssim, max_difference and\n"
+                      "identical as one JSON object");
     return compare;
 }
 
+/// One line, whatever the file's name is made of.
 int report(const Failure& failure) {
-    std::fprintf(stderr, "stillframe: %s\n", failure.message.c_str());
+    std::string line = failure.message;
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < 32; }, '?');
+    std::fprintf(stderr, "stillframe: %s\n", line.c_str());
     return int(failure.code);
 }
 
 int run(int argc, char** argv) {
-    CLI::App app("Renders scenes on the CPU, anti-aliased over time, to the same bytes everywhere");
+    CLI::App app("Renders scenes on the CPU, anti-aliased over time, to the same bytes everywhere",
+                 "stillframe");
     app.set_version_flag("--version", "stillframe " STILL_VERSION);
     app.require_subcommand(1);
     app.footer(kExitCodes);
@@ -97,7 +145,7 @@ int run(int argc, char** argv) {
         if (error.get_exit_code() == 0) {
             return app.exit(error);  // --help or --version
         }
-        return report({ExitCode::usage, error.what()});
+        return report({ExitCode::usage, error.what() + std::string("; see stillframe --help")});
     }
     Interruption interruption;
     const Outcome<ExitCode> outcome =

@@ -18,7 +18,8 @@ namespace {
 std::vector<std::string> ffmpegArguments(const std::filesystem::path& target, int width, int height,
                                          int fps) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
-    return {"ffmpeg", "-loglevel", "error", "-y",
+    // Without -xerror ffmpeg ends happily when the disk is full.
+    return {"ffmpeg", "-loglevel", "error", "-xerror", "-y",
             // in
             "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size, "-framerate",
             std::to_string(fps), "-i", "pipe:0",
