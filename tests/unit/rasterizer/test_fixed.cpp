@@ -7,6 +7,7 @@
 
 #include "rasterizer/fixed.h"
 #include "rasterizer/gbuffer.h"
+#include "rasterizer/internal/kernels.h"
 #include "rasterizer/simd.h"
 
 using namespace still;
@@ -70,4 +71,17 @@ TEST_CASE("simd: scalar is always there and first, the best one is last, names d
     CHECK(names.size() == targets.size());
     CHECK(name(SimdTarget::scalar) == "scalar");
     CHECK(name(SimdTarget::avx512) == "avx512");
+}
+
+TEST_CASE("simd: every available target has a full table of kernels", "[simd]") {
+    CHECK(&internal::kernelsFor(SimdTarget::scalar) == &internal::referenceKernels());
+    for (SimdTarget target : availableSimdTargets()) {
+        CAPTURE(name(target));
+        const internal::RasterKernels& kernels = internal::kernelsFor(target);
+        CHECK(kernels.transformVertices != nullptr);
+        CHECK(kernels.rasterizeTile != nullptr);
+        CHECK(kernels.shadeTile != nullptr);
+        const internal::RasterKernels& scalar = internal::referenceKernels();
+        CHECK((target == SimdTarget::scalar) == (kernels.shadeTile == scalar.shadeTile));
+    }
 }

@@ -192,3 +192,37 @@ TEST_CASE("shared edges: nets as large as the guard band leave no gap", "[covera
         CHECK(badSamplesInOnePicture(view, fan(view, 3000, 16000, random)) == 0);
     }
 }
+
+TEST_CASE("shared edges: a clipped triangle and its whole neighbour meet exactly", "[coverage]") {
+    FrameView view;
+    view.width = view.height = 256;
+    view.view_projection = view.view_projection_before = perspective(1, 1, 0.1, 100);
+    Random random(11);
+    int bad = 0;
+    for (int round = 0; round < 300; ++round) {
+        // An upright edge halfway between two steps of the grid, where any two ways of rounding
+        // differ, and the samples of one column on one of these steps.
+        const int column = random.integer(2, 253);
+        view.jitter_x_fx8 = random.integer(-127, 127);
+        const int sample_fx8 = column * 256 + 128 + view.jitter_x_fx8;
+        const double edge_px = (sample_fx8 + (round % 2 == 0 ? 0.5 : -0.5)) / 256.0;
+        const auto corner = [&](double x_px, double y_px, double w) {
+            return TestVertex{float((x_px / 128 - 1) * w), float((1 - y_px / 128) * w), float(-w)};
+        };
+        const auto some_w = [&] { return random.real(0.5, 20); };
+        const TestVertex top = corner(edge_px, -5, some_w());
+        const TestVertex bottom = corner(edge_px, 261, some_w());
+        GBuffer left, right;
+        TestScene whole, clipped;
+        whole.addTriangle(top, bottom, corner(edge_px - 40, 128, some_w()));
+        clipped.addTriangle(top, bottom, corner(edge_px + 40000, 128, some_w()));
+        draw(whole.list(), view, left);
+        draw(clipped.list(), view, right);
+        for (int y = 0; y < 256; ++y) {
+            for (int x = column - 1; x <= column + 1; ++x) {
+                bad += (left.id.at(x, y) != 0) + (right.id.at(x, y) != 0) == 1 ? 0 : 1;
+            }
+        }
+    }
+    CHECK(bad == 0);
+}
