@@ -22,7 +22,7 @@ struct HistoryPlanes {
     std::array<Image<uint16_t>, 3> mean;
     std::array<Image<int8_t>, 3> rest;
     Image<uint8_t> count;
-    Image<uint16_t> surface, depth, normal, own;
+    Image<uint16_t> surface, depth, normal;
 
     void resize(int width, int height) {
         for (int c = 0; c < 3; ++c) {
@@ -33,7 +33,6 @@ struct HistoryPlanes {
         surface.resize(width, height);
         depth.resize(width, height);
         normal.resize(width, height);
-        own.resize(width, height);
     }
 
     HistoryOut pointers() {
@@ -46,7 +45,6 @@ struct HistoryPlanes {
         p.surface = surface.view().data;
         p.depth = depth.view().data;
         p.normal = normal.view().data;
-        p.own = own.view().data;
         return p;
     }
 };
@@ -61,7 +59,6 @@ HistoryIn readOnly(const HistoryOut& p) {
     in.surface = p.surface;
     in.depth = p.depth;
     in.normal = p.normal;
-    in.own = p.own;
     return in;
 }
 
@@ -103,10 +100,9 @@ struct Taa::State {
     int sample_cap = 0;
     bool has_history = false;
 
-    TileRect rectOf(const GBuffer& gbuffer, int tile) const {
+    TileRect rectOf(int tile) const {
         const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
-        return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height),
-                gbuffer.tiles[size_t(tile)].stochastic};
+        return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
     }
 
     void resize(const GBuffer& gbuffer) {
@@ -162,7 +158,7 @@ const uint64_t* Taa::State::findResting(const GBuffer& gbuffer, Workers& workers
     resting.assign(size_t(workers.threads()), SurfaceBits{});
     workers.parallelFor(int(gbuffer.tiles.size()), 1, [&](int begin, int end, int worker) {
         for (int tile = begin; tile < end; ++tile) {
-            markResting(gbuffer, rectOf(gbuffer, tile), resting[size_t(worker)]);
+            markResting(gbuffer, rectOf(tile), resting[size_t(worker)]);
         }
     });
     for (size_t w = 1; w < resting.size(); ++w) {
@@ -214,7 +210,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
             if (s.work[size_t(tile)] == TileWork::idle) {
                 continue;
             }
-            const TileResult result = kernel(job, s.rectOf(gbuffer, tile), s.work[size_t(tile)]);
+            const TileResult result = kernel(job, s.rectOf(tile), s.work[size_t(tile)]);
             memory = {result.finished, result.changed,
                       s.work[size_t(tile)] == TileWork::still && !result.changed};
         }

@@ -19,7 +19,6 @@ struct HistoryPointers {
     U16* surface = nullptr;  ///< of the pixel's owner, the nearest sample in its 3×3 window
     U16* depth = nullptr;    ///< logDepth16 of the owner
     U16* normal = nullptr;   ///< of the owner, see compactNormal()
-    U16* own = nullptr;      ///< surface of the pixel's own latest sample
 };
 using HistoryOut = HistoryPointers<uint16_t, int8_t, uint8_t>;
 using HistoryIn = HistoryPointers<const uint16_t, const int8_t, const uint8_t>;
@@ -55,7 +54,6 @@ struct ResolveJob {
 /// A tile's pixels, clipped to the image.
 struct TileRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    bool stochastic = false;
 };
 
 /// The loops a tile can be resolved with.

@@ -14,11 +14,9 @@ enum class Trust : uint8_t { none, suspect, full };
 struct Claim {
     const ResolveJob& job;
     const Owner& owner;
-    uint16_t surface;      ///< owner's
-    uint16_t own_surface;  ///< of the pixel's own sample
+    uint16_t surface;  ///< owner's
     int tolerance;
     bool surface_rests;
-    bool stochastic;
 };
 
 struct Taps {
@@ -39,23 +37,22 @@ bool apart(Motion a, Motion b) {
     return std::abs(a.x_fx8 - b.x_fx8) + std::abs(a.y_fx8 - b.y_fx8) >= kApart;
 }
 
-/// The surface, depth and normal tests of a tap.
+/// The surface, depth and normal tests of a tap. Where nothing moves but the camera, the expected
+/// depth alone says that it is the same place; otherwise it must be the same surface, too.
 Trust trustTap(const Claim& claim, ptrdiff_t at) {
     const HistoryIn& before = claim.job.before;
     const uint16_t stored = before.surface[at];
-    if (stored == claim.surface) {
-        if (std::abs(int(before.depth[at]) - int(claim.owner.expected)) > claim.tolerance) {
-            return Trust::none;
-        }
+    const bool rest = claim.surface_rests && claim.job.restsNow(stored);
+    if (stored != claim.surface && !rest) {
+        return Trust::none;
+    }
+    if (std::abs(int(before.depth[at]) - int(claim.owner.expected)) <= claim.tolerance) {
         const bool smooth = claim.job.now.normal == nullptr ||
                             similarNormals(before.normal[at], claim.owner.normal);
         return smooth && !claim.job.shading_changed ? Trust::full : Trust::suspect;
     }
-    // Two surfaces at rest to the left and right of an edge: which of them is nearest in the window
-    // may depend on the jitter alone.
-    const bool may_be_jitter = claim.stochastic || before.own[at] == claim.own_surface;
-    const bool rest = claim.surface_rests && claim.job.restsNow(stored);
-    return may_be_jitter && rest ? Trust::suspect : Trust::none;
+    // Which surface is nearest in a window may depend on the jitter alone.
+    return rest ? Trust::suspect : Trust::none;
 }
 
 void copyTap(const ResolveJob& job, ptrdiff_t at, Past& past) {
@@ -204,20 +201,14 @@ Owner findOwner(const ResolveJob& job, int x, int y) noexcept {
     return owner;
 }
 
-Past findPast(const ResolveJob& job, const TileRect& tile, int x, int y,
-              const Owner& owner) noexcept {
+Past findPast(const ResolveJob& job, int x, int y, const Owner& owner) noexcept {
     Past past;
     if (owner.motion.x_fx8 == kNoHistory) {
         return past;
     }
     const ptrdiff_t centre = y * job.stride + x;
-    const Claim claim{job,
-                      owner,
-                      uint16_t(owner.id & kSurfaceMask),
-                      uint16_t(job.now.id[centre] & kSurfaceMask),
-                      kDepthTolerance + kSlopeFactor * owner.slope,
-                      (owner.id & kMovedBit) == 0,
-                      tile.stochastic};
+    const Claim claim{job, owner, uint16_t(owner.id & kSurfaceMask),
+                      kDepthTolerance + kSlopeFactor * owner.slope, (owner.id & kMovedBit) == 0};
     if (stillProves(claim, job.before.surface[centre])) {
         copyTap(job, centre, past);
         past.proven = !job.shading_changed;
@@ -248,7 +239,7 @@ Past findPast(const ResolveJob& job, const TileRect& tile, int x, int y,
     if (past.count == 0) {
         blendWindow(claim, (px + 128) >> 8, (py + 128) >> 8, kWindowCount, past);
     }
-    if (claim.own_surface != claim.surface && apart(job.now.motion[centre], owner.motion)) {
+    if (job.now.id[centre] != owner.id && apart(job.now.motion[centre], owner.motion)) {
         past.count = std::min(past.count, kEdgeCount);
         past.suspect = true;
     }

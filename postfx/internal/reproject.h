@@ -31,7 +31,6 @@ struct Past {
 };
 
 Owner findOwner(const ResolveJob& job, int x, int y) noexcept;
-Past findPast(const ResolveJob& job, const TileRect& tile, int x, int y,
-              const Owner& owner) noexcept;
+Past findPast(const ResolveJob& job, int x, int y, const Owner& owner) noexcept;
 
 }  // namespace still::taa

@@ -17,13 +17,14 @@ struct Group {
     ptrdiff_t at;
     V32 surface, expected, normal;
     V32 tolerance;
+    V32 strict;   ///< all ones where only the same surface will do
     VI32 fx, fy;  ///< fractions of the motion
     Sums sums;    ///< result of the lanes that are done
 };
 
 /// What taps are held against in 16-bit lanes, for one displacement by whole pixels.
 struct Test {
-    V16 surface, expected, tolerance;
+    V16 surface, expected, tolerance, strict;
     V32 normal;
 };
 
@@ -34,7 +35,8 @@ HWY_INLINE V32 distrust(const ResolveJob& job, const Test& test, ptrdiff_t at) {
     const V16 surface = hn::LoadU(d16, job.before.surface + at);
     const V16 depth = hn::LoadU(d16, job.before.depth + at);
     const V16 apart = hn::Sub(hn::Max(depth, test.expected), hn::Min(depth, test.expected));
-    const V16 bad = hn::Or(hn::Xor(surface, test.surface), hn::SaturatedSub(apart, test.tolerance));
+    const V16 other = hn::And(hn::Xor(surface, test.surface), test.strict);
+    const V16 bad = hn::Or(other, hn::SaturatedSub(apart, test.tolerance));
     V32 result = hn::PromoteTo(d, bad);
     if (job.now.normal != nullptr) {
         const V32 normal = load16(job.before.normal + at);
@@ -166,7 +168,8 @@ HWY_INLINE Mask32 resolveMoved(Group& g, Mask32 lanes, int dx, int dy) {
         return lanes;
     }
     f.from = iy * job.stride + ix;
-    const Test test{narrow16(g.surface), narrow16(g.expected), narrow16(g.tolerance), g.normal};
+    const Test test{narrow16(g.surface), narrow16(g.expected), narrow16(g.tolerance),
+                    narrow16(g.strict), g.normal};
     V32 count;
     lanes = trustFootprint(job, test, f, lanes, count);
     if (hn::AllFalse(d, lanes)) {
@@ -230,8 +233,7 @@ HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const 
     const V32 surface_mask = hn::Set(d, kSurfaceMask);
     const V32 own_id = load16(job.now.id + at);
     const V32 depth = clampedLogDepth(owners.depth);
-    const V32 own_surface = hn::And(own_id, surface_mask);
-    storeOwners(job, at, owners, depth, own_surface);
+    storeOwners(job, at, owners, depth);
 
     const VI32 motion_x = hn::ShiftRight<16>(hn::ShiftLeft<16>(asSigned(owners.motion)));
     const VI32 motion_y = hn::ShiftRight<16>(asSigned(owners.motion));
@@ -240,6 +242,11 @@ HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const 
     const VI32 tolerance =
         hn::Add(hn::Set(di, kDepthTolerance), hn::Mul(slope, hn::Set(di, kSlopeFactor)));
     const V32 surface = hn::And(owners.id, surface_mask);
+    // Where some surfaces move, resting ones with other numbers are left to resolvePixel().
+    const auto moved = hn::Gt(asSigned(owners.id), hn::Set(di, kMovedBit - 1));
+    const V32 strict = job.at_rest != nullptr
+                           ? hn::Set(d, 0xFFFFu)
+                           : hn::IfThenElseZero(hn::RebindMask(d, moved), hn::Set(d, 0xFFFFu));
     Group g{job,
             x,
             y,
@@ -248,6 +255,7 @@ HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const 
             owners.expected,
             owners.normal,
             asUnsigned(hn::Min(tolerance, hn::Set(di, 65535))),
+            strict,
             hn::And(motion_x, fraction),
             hn::And(motion_y, fraction),
             Sums{}};
@@ -274,7 +282,7 @@ HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const 
     report(result, job, hn::And(pixels, done), g.sums.count, kept);
     for (uint64_t left = bitsOf(hn::AndNot(done, pixels)); left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        result.changed |= !resolvePixel(job, tile, x + lane, y);
+        result.changed |= !resolvePixel(job, x + lane, y);
         result.finished &= int(job.next.count[at + lane]) >= job.sample_cap;
     }
 }

@@ -15,7 +15,7 @@ struct TileResult {
 
 /// Resolves the pixel by the rules of TileWork::general and writes its history. Returns whether the
 /// pixel is finished and unchanged.
-bool resolvePixel(const ResolveJob& job, const TileRect& tile, int x, int y) noexcept;
+bool resolvePixel(const ResolveJob& job, int x, int y) noexcept;
 
 /// `work` is not idle.
 TileResult resolveTileReference(const ResolveJob& job, const TileRect& tile,

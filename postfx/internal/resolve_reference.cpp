@@ -14,7 +14,6 @@ void storeOwner(const ResolveJob& job, ptrdiff_t at, const Owner& owner) {
     job.next.surface[at] = owner.id & kSurfaceMask;
     job.next.depth[at] = owner.depth;
     job.next.normal[at] = owner.normal;
-    job.next.own[at] = job.now.id[at] & kSurfaceMask;
 }
 
 void storeFirst(const ResolveJob& job, ptrdiff_t at) {
@@ -52,7 +51,6 @@ bool stillPixel(const ResolveJob& job, int x, int y) {
     job.next.surface[at] = job.before.surface[at];
     job.next.depth[at] = job.before.depth[at];
     job.next.normal[at] = job.before.normal[at];
-    job.next.own[at] = job.before.own[at];
     const int count = job.before.count[at];
     if (count >= job.sample_cap) {
         keepPixel(job, at);
@@ -76,11 +74,11 @@ void holdAgainstWindow(const ResolveJob& job, int x, int y, Past& past) {
 
 }  // namespace
 
-bool resolvePixel(const ResolveJob& job, const TileRect& tile, int x, int y) noexcept {
+bool resolvePixel(const ResolveJob& job, int x, int y) noexcept {
     const ptrdiff_t at = y * job.stride + x;
     const Owner owner = findOwner(job, x, y);
     storeOwner(job, at, owner);
-    Past past = findPast(job, tile, x, y, owner);
+    Past past = findPast(job, x, y, owner);
     if (past.count == 0) {
         storeFirst(job, at);
         return false;
@@ -112,7 +110,7 @@ TileResult resolveTileReference(const ResolveJob& job, const TileRect& tile,
             if (work == TileWork::still) {
                 kept = stillPixel(job, x, y);
             } else if (work == TileWork::general) {
-                kept = resolvePixel(job, tile, x, y);
+                kept = resolvePixel(job, x, y);
             } else {
                 storeOwner(job, at, findOwner(job, x, y));
                 storeFirst(job, at);

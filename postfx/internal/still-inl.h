@@ -10,7 +10,6 @@ HWY_INLINE void copyOwners(const ResolveJob& job, ptrdiff_t at, int count) {
     std::memcpy(job.next.surface + at, job.before.surface + at, bytes);
     std::memcpy(job.next.depth + at, job.before.depth + at, bytes);
     std::memcpy(job.next.normal + at, job.before.normal + at, bytes);
-    std::memcpy(job.next.own + at, job.before.own + at, bytes);
 }
 
 HWY_ATTR TileResult resolveStill(const ResolveJob& job, const TileRect& tile) {
@@ -38,12 +37,10 @@ HWY_ATTR TileResult resolveStill(const ResolveJob& job, const TileRect& tile) {
     return result;
 }
 
-HWY_INLINE void storeOwners(const ResolveJob& job, ptrdiff_t at, const Owners& owners, V32 depth,
-                            V32 own_surface) {
+HWY_INLINE void storeOwners(const ResolveJob& job, ptrdiff_t at, const Owners& owners, V32 depth) {
     store16(hn::And(owners.id, hn::Set(D32(), kSurfaceMask)), job.next.surface + at);
     store16(depth, job.next.depth + at);
     store16(owners.normal, job.next.normal + at);
-    store16(own_surface, job.next.own + at);
 }
 
 HWY_ATTR TileResult resolveFresh(const ResolveJob& job, const TileRect& tile) {
@@ -55,8 +52,7 @@ HWY_ATTR TileResult resolveFresh(const ResolveJob& job, const TileRect& tile) {
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             const ptrdiff_t at = y * job.stride + x;
             const Owners owners = ownersOf(strip, x - tile.x0);
-            const V32 own = hn::And(load16(job.now.id + at), hn::Set(d, kSurfaceMask));
-            storeOwners(job, at, owners, clampedLogDepth(owners.depth), own);
+            storeOwners(job, at, owners, clampedLogDepth(owners.depth));
             Sums sums;
             for (int c = 0; c < 3; ++c) {
                 sums.mean[c] = load16(job.now.colour[c] + at);

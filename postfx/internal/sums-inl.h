@@ -81,10 +81,10 @@ HWY_INLINE void prefetchOwners(const ResolveJob& job, ptrdiff_t at, ptrdiff_t fr
     const HistoryIn& before = job.before;
     const HistoryOut& next = job.next;
     for (int half = 0; half < kTileSize; half += 32) {
-        for (const uint16_t* p : {before.surface, before.depth, before.normal, before.own}) {
+        for (const uint16_t* p : {before.surface, before.depth, before.normal}) {
             hwy::Prefetch(p + from + half);
         }
-        for (const uint16_t* p : {next.surface, next.depth, next.normal, next.own}) {
+        for (const uint16_t* p : {next.surface, next.depth, next.normal}) {
             hwy::Prefetch(p + at + half);
         }
     }
