@@ -37,11 +37,8 @@ class ChunkBuilder {
             addClipped(triangle, index);
             return;
         }
-        ScreenVertex v[3];
-        for (int k = 0; k < 3; ++k) {
-            const uint32_t i = index[k];
-            v[k] = {screen.x_fx8[i], screen.y_fx8[i], screen.z[i], screen.inv_w[i], 0};
-        }
+        const ScreenVertex v[3] = {snappedVertex(index[0]), snappedVertex(index[1]),
+                                   snappedVertex(index[2])};
         add(v, triangle, -1);
     }
 
@@ -64,6 +61,12 @@ class ChunkBuilder {
     }
 
   private:
+    /// As the vertex stage left it.
+    ScreenVertex snappedVertex(uint32_t i) const {
+        const ScreenVertices& screen = input_.projection.out;
+        return {screen.x_fx8[i], screen.y_fx8[i], screen.z[i], screen.inv_w[i], 0};
+    }
+
     void add(const ScreenVertex v[3], uint32_t triangle, int32_t clip) {
         SetupTriangle t;
         if (!setupTriangle(v, sample_x_fx8_, sample_y_fx8_, view_.width, view_.height, t)) {
@@ -93,7 +96,11 @@ class ChunkBuilder {
         ++chunk_.counters.clipped;
         ScreenVertex screen[kMaxClippedCorners];
         for (int k = 0; k < count; ++k) {
-            screen[k] = projectClipped(polygon[k]);
+            // A corner that clipping did not make must be where an unclipped neighbour has it.
+            const int source = polygon[k].source;
+            const bool snapped =
+                source >= 0 && (job.out.outcode[index[source]] & (kOutNear | kOutGuard)) == 0;
+            screen[k] = snapped ? snappedVertex(index[source]) : projectClipped(polygon[k]);
         }
         for (int k = 2; k < count; ++k) {
             const int fan[3] = {0, k - 1, k};

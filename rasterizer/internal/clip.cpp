@@ -29,8 +29,12 @@ double lerp(double in, double out, double t) {
 }
 
 ClippedVertex between(const ClippedVertex& in, const ClippedVertex& out, double t) {
-    ClippedVertex r{
-        lerp(in.x, out.x, t), lerp(in.y, out.y, t), lerp(in.z, out.z, t), lerp(in.w, out.w, t), {}};
+    ClippedVertex r{lerp(in.x, out.x, t),
+                    lerp(in.y, out.y, t),
+                    lerp(in.z, out.z, t),
+                    lerp(in.w, out.w, t),
+                    {},
+                    -1};
     for (int k = 0; k < 3; ++k) {
         r.b[k] = lerp(in.b[k], out.b[k], t);
     }
@@ -45,7 +49,8 @@ int clipTriangle(const ClipVertex corners[3], double guard_x, double guard_y,
     int count = 3;
     for (int k = 0; k < 3; ++k) {
         const ClipVertex& c = corners[k];
-        out[k] = {c.x, c.y, c.z, c.w, {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0}};
+        out[k] = {c.x, c.y, c.z, c.w, {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0},
+                  k};
     }
     for (int plane = 0; plane < kPlanes && count >= 3; ++plane) {
         std::memcpy(polygon, out, sizeof(polygon));

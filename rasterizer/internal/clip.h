@@ -11,6 +11,7 @@ namespace still::internal {
 struct ClippedVertex {
     double x, y, z, w;
     double b[3];  ///< barycentric coordinates in the source triangle
+    int source;   ///< the corner of the source triangle that it is, −1 when clipping made it
 };
 
 /// A triangle cut by five planes has at most eight corners.
