@@ -26,9 +26,9 @@ PixelError pixelError(ImageView<const Rgb8> a, ImageView<const Rgb8> b);
 double psnrDb(const PixelError& error);
 
 /// Mean structural similarity of the luma (BT.601 weights), 1 when identical. Windows of 11 × 11
-/// with a Gaussian of σ = 1.5 that lie fully inside (Wang, Bovik, Sheikh, Simoncelli: "Image quality
-/// assessment: from error visibility to structural similarity", 2004); a picture narrower or lower
-/// than a window shortens the window to its own size. The views have equal sizes, not 0.
+/// with a Gaussian of σ = 1.5 that lie fully inside (Wang, Bovik, Sheikh, Simoncelli: "Image
+/// quality assessment: from error visibility to structural similarity", 2004); a picture narrower
+/// or lower than a window shortens the window to its own size. The views have equal sizes, not 0.
 double ssim(ImageView<const Rgb8> a, ImageView<const Rgb8> b);
 
 }  // namespace still

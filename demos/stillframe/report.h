@@ -22,7 +22,7 @@ struct RenderReport {
     struct Frame {
         int frame = 0;
         StageTimes times;
-        double total_ms = 0;
+        double total_ms = 0;  ///< wall time, replayed frames (--start) included
         FrameHashes hashes;
     };
     std::vector<Frame> frames;
