@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <regex>
+#include <string_view>
 #include <system_error>
 
 namespace still::command {
@@ -16,29 +16,63 @@ std::string padded(int number, int digits) {
     return text;
 }
 
+/// Where the frame number goes in a text, and how wide it is at least.
+struct Place {
+    size_t begin = 0, size = 0;
+    int digits = 1;
+};
+
+bool isDigit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/// A place that begins `text`: {frame}, {frame:N}, %d or %0Nd, N one digit.
+std::optional<Place> placeAtStart(std::string_view text) {
+    if (text.starts_with("{frame}")) {
+        return Place{0, 7, 1};
+    }
+    if (text.starts_with("{frame:") && text.size() >= 9 && isDigit(text[7]) && text[8] == '}') {
+        return Place{0, 9, text[7] - '0'};
+    }
+    if (text.starts_with("%d")) {
+        return Place{0, 2, 1};
+    }
+    if (text.starts_with("%0") && text.size() >= 4 && isDigit(text[2]) && text[3] == 'd') {
+        return Place{0, 4, text[2] - '0'};
+    }
+    return std::nullopt;
+}
+
+std::optional<Place> findPlace(std::string_view text) {
+    for (size_t begin = 0; begin < text.size(); ++begin) {
+        if (auto place = placeAtStart(text.substr(begin))) {
+            place->begin = begin;
+            return place;
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 Outcome<NamePattern> NamePattern::parse(const std::string& text) {
-    static const std::regex kPlace(R"(\{frame(:(\d))?\}|%(0(\d))?d)");
     const fs::path path(text);
     const std::string file_name = path.filename().string();
     if (file_name.empty()) {
         return usageError(text + ": expected a file name");
     }
-    if (std::regex_search(path.parent_path().string(), kPlace)) {
+    if (findPlace(path.parent_path().string())) {
         return usageError(text + ": the frame number can only stand in the file name");
     }
     NamePattern pattern;
     pattern.folder_ = path.parent_path();
     pattern.before_ = file_name;
-    std::smatch match;
-    if (std::regex_search(file_name, match, kPlace)) {
-        const std::string digits = match[2].str() + match[4].str();
+    if (const auto place = findPlace(file_name)) {
         pattern.numbered_ = true;
-        pattern.digits_ = digits.empty() ? 1 : digits[0] - '0';
-        pattern.before_ = match.prefix();
-        pattern.after_ = match.suffix();
-        if (std::regex_search(pattern.after_, kPlace)) {
+        pattern.digits_ = place->digits;
+        pattern.before_ = file_name.substr(0, place->begin);
+        pattern.after_ = file_name.substr(place->begin + place->size);
+        if (findPlace(pattern.after_)) {
             return usageError(text + ": expected one place for the frame number, found two");
         }
     }
