@@ -17,7 +17,8 @@ struct Group {
     ptrdiff_t at;
     V32 surface, expected, normal;
     V32 tolerance;
-    V32 strict;   ///< all ones where only the same surface will do
+    V32 strict;  ///< all ones where only the same surface will do
+    VI32 motion_x, motion_y;
     VI32 fx, fy;  ///< fractions of the motion
     Sums sums;    ///< result of the lanes that are done
 };
@@ -224,49 +225,56 @@ HWY_INLINE Mask32 resolveByMotion(Group& g, Mask32 open, VI32 whole_x, VI32 whol
     return done;
 }
 
-HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const OwnerStrip& strip,
-                             int x, int y, TileResult& result) {
+HWY_INLINE Group makeGroup(const ResolveJob& job, int x, int y, const Owners& owners, V32 depth) {
     const D32 d;
     const DI32 di;
     const ptrdiff_t at = y * job.stride + x;
-    const Owners owners = ownersOf(strip, x - tile.x0);
-    const V32 surface_mask = hn::Set(d, kSurfaceMask);
-    const V32 own_id = load16(job.now.id + at);
-    const V32 depth = clampedLogDepth(owners.depth);
-    storeOwners(job, at, owners, depth);
-
     const VI32 motion_x = hn::ShiftRight<16>(hn::ShiftLeft<16>(asSigned(owners.motion)));
     const VI32 motion_y = hn::ShiftRight<16>(asSigned(owners.motion));
     const VI32 fraction = hn::Set(di, 255);
     const VI32 slope = asSigned(hn::Sub(depth, clampedLogDepth(hn::LoadU(d, job.now.depth + at))));
     const VI32 tolerance =
         hn::Add(hn::Set(di, kDepthTolerance), hn::Mul(slope, hn::Set(di, kSlopeFactor)));
-    const V32 surface = hn::And(owners.id, surface_mask);
     // Where some surfaces move, resting ones with other numbers are left to resolvePixel().
     const auto moved = hn::Gt(asSigned(owners.id), hn::Set(di, kMovedBit - 1));
     const V32 strict = job.at_rest != nullptr
                            ? hn::Set(d, 0xFFFFu)
                            : hn::IfThenElseZero(hn::RebindMask(d, moved), hn::Set(d, 0xFFFFu));
-    Group g{job,
+    Sums none;
+    for (int c = 0; c < 3; ++c) {
+        none.mean[c] = hn::Zero(d);
+        none.rest[c] = hn::Zero(di);
+    }
+    none.count = hn::Set(d, 255u);
+    return {job,
             x,
             y,
             at,
-            surface,
+            hn::And(owners.id, hn::Set(d, kSurfaceMask)),
             owners.expected,
             owners.normal,
             asUnsigned(hn::Min(tolerance, hn::Set(di, 65535))),
             strict,
+            motion_x,
+            motion_y,
             hn::And(motion_x, fraction),
             hn::And(motion_y, fraction),
-            Sums{}};
-    for (int c = 0; c < 3; ++c) {
-        g.sums.mean[c] = hn::Zero(d);
-        g.sums.rest[c] = hn::Zero(di);
-    }
-    g.sums.count = hn::Set(d, 255u);
+            none};
+}
 
+HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const OwnerStrip& strip,
+                             int x, int y, TileResult& result) {
+    const D32 d;
+    const DI32 di;
+    const ptrdiff_t at = y * job.stride + x;
+    const Owners owners = ownersOf(strip, x - tile.x0);
+    const V32 own_id = load16(job.now.id + at);
+    const V32 depth = clampedLogDepth(owners.depth);
+    storeOwners(job, at, owners, depth);
+
+    Group g = makeGroup(job, x, y, owners, depth);
     const Mask32 pixels = lanesBefore(tile.x1 - x);
-    const auto has_motion = hn::RebindMask(d, hn::Ne(motion_x, hn::Set(di, kNoHistory)));
+    const auto has_motion = hn::RebindMask(d, hn::Ne(g.motion_x, hn::Set(di, kNoHistory)));
     Mask32 open = hn::And(hn::And(pixels, has_motion), hn::Eq(own_id, owners.id));
     Mask32 kept = noLanes();
     Mask32 done = noLanes();
@@ -276,8 +284,8 @@ HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const 
         done = resolveProven(g, proven, kept);
         open = hn::AndNot(proven, open);
     }
-    done = hn::Or(
-        done, resolveByMotion(g, open, hn::ShiftRight<8>(motion_x), hn::ShiftRight<8>(motion_y)));
+    done = hn::Or(done, resolveByMotion(g, open, hn::ShiftRight<8>(g.motion_x),
+                                        hn::ShiftRight<8>(g.motion_y)));
     storeSums(job.next, at, g.sums);
     report(result, job, hn::And(pixels, done), g.sums.count, kept);
     for (uint64_t left = bitsOf(hn::AndNot(done, pixels)); left != 0; left &= left - 1) {

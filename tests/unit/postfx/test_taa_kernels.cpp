@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -59,6 +59,19 @@ std::vector<uint16_t> resolveRandom(const Options& base, uint64_t seed, int fram
     return seen;
 }
 
+bool hasWord(const std::string& line, const std::string& word) {
+    const auto letter = [&](size_t i) {
+        return i < line.size() &&
+               (std::isalnum(static_cast<unsigned char>(line[i])) != 0 || line[i] == '_');
+    };
+    for (size_t at = line.find(word); at != std::string::npos; at = line.find(word, at + 1)) {
+        if (!letter(at - 1) && !letter(at + word.size())) {
+            return true;
+        }
+    }
+    return false;
+}
+
 const Options kSizes[] = {{.width = 1, .height = 1},    {.width = 3, .height = 200},
                           {.width = 65, .height = 63},  {.width = 200, .height = 3},
                           {.width = 130, .height = 70}, {.width = 16, .height = 16}};
@@ -98,7 +111,6 @@ TEST_CASE("taa: threads and schedules do not change a bit", "[postfx][determinis
 
 TEST_CASE("taa: kernel sources contain no floating-point type", "[postfx][unit]") {
     const std::filesystem::path root = std::filesystem::path(STILL_SOURCE_DIR) / "postfx";
-    const std::regex forbidden("\\b(float|double)\\b");
     int files = 0;
     std::vector<std::filesystem::path> kernels{root / "taa.cpp", root / "taa.h"};
     for (const auto& entry : std::filesystem::directory_iterator(root / "internal")) {
@@ -111,7 +123,8 @@ TEST_CASE("taa: kernel sources contain no floating-point type", "[postfx][unit]"
         std::string line;
         for (int number = 1; std::getline(in, line); ++number) {
             INFO(path << ":" << number << ": " << line);
-            CHECK_FALSE(std::regex_search(line, forbidden));
+            CHECK_FALSE(hasWord(line, "float"));
+            CHECK_FALSE(hasWord(line, "double"));
         }
     }
     CHECK(files >= 10);
