@@ -267,6 +267,35 @@ int coverageThreshold(const std::vector<uint8_t>& alpha, double wanted) {
     return best;
 }
 
+/// Share of the area whose bilinearly filtered alpha is at least one half, by four points a texel.
+double filteredCoverage(const uint8_t* alpha, const TextureLevel& level, Wrap wrap) {
+    const int width = int(level.width), height = int(level.height);
+    size_t covered = 0;
+    for (int y = 0; y < height; ++y) {
+        const uint8_t* rows[3];
+        for (int dy = -1; dy <= 1; ++dy) {
+            rows[dy + 1] = alpha + size_t(neighbour(y, dy, height, wrap)) * level.width;
+        }
+        for (int x = 0; x < width; ++x) {
+            const int left = neighbour(x, -1, width, wrap), right = neighbour(x, 1, width, wrap);
+            for (const uint8_t* other : {rows[0], rows[2]}) {
+                for (const int beside : {left, right}) {
+                    const int sum =
+                        9 * rows[1][x] + 3 * (rows[1][beside] + other[x]) + other[beside];
+                    covered += 2 * sum >= 16 * 255 ? 1 : 0;
+                }
+            }
+        }
+    }
+    return double(covered) / (4.0 * width * height);
+}
+
+/// Whether a level may stand for the first one: neither its covered nor its open share is off by
+/// more than a tenth. Beyond that a chain-link fence would vanish, or turn into a wall.
+bool keepsCoverage(double coverage, double wanted) {
+    return std::abs(coverage - wanted) <= 0.1 * std::min(wanted, 1.0 - wanted) + 0.005;
+}
+
 /// Scales so that bytes ≥ `threshold`, and only those, become ≥ kAlphaHalf: rounds a · 128 / T.
 void scaleAlpha(std::vector<uint8_t>& alpha, int threshold) {
     for (uint8_t& a : alpha) {
@@ -319,7 +348,13 @@ AlphaTexture makeAlphaTexture(ImageView<const Rgba8> image, Wrap wrap, bool pres
     };
     // Averages go on from the unscaled values, so that the scales of the levels do not pile up.
     std::vector<uint8_t> bytes;
+    const double first_coverage = filteredCoverage(texture.texels.data(), texture.levels[0], wrap);
+    size_t kept = 1;
+    bool ended = false;
     forEachMip<1>(texture.levels, fetch, [&](const TextureLevel& level, const Plane<1>& plane) {
+        if (ended) {
+            return;
+        }
         bytes.clear();
         for (const std::array<double, 1>& t : plane.texels) {
             bytes.push_back(uint8_t(roundHalfUp(t[0])));
@@ -327,9 +362,17 @@ AlphaTexture makeAlphaTexture(ImageView<const Rgba8> image, Wrap wrap, bool pres
         if (preserve_coverage) {
             const double wanted = double(covered) * double(bytes.size()) / double(count);
             scaleAlpha(bytes, coverageThreshold(bytes, wanted));
+            ended = !keepsCoverage(filteredCoverage(bytes.data(), level, wrap), first_coverage);
+            if (ended) {
+                return;
+            }
         }
+        ++kept;
         std::copy(bytes.begin(), bytes.end(), texture.texels.begin() + level.offset);
     });
+    texture.levels.resize(kept);
+    const TextureLevel& last = texture.levels.back();
+    texture.texels.resize(size_t{last.offset} + size_t{last.width} * last.height + kSpareBytes);
     return texture;
 }
 

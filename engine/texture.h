@@ -1,6 +1,7 @@
 #pragma once
 // Pixels in, mip-mapped textures in the rasterizer's formats out. Used by the loaders and by the
-// built-in scenes. Mip levels are box-filtered in linear light with exact area weights for odd sizes.
+// built-in scenes. Mip levels are box-filtered in linear light with exact area weights for odd
+// sizes.
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/image.h"
@@ -22,8 +23,10 @@ Texture makeNormalTexture(ImageView<const Rgba8> image, Wrap wrap);
 /// Grey height image → normal map by central differences; `bump_scale` as MTL's -bm.
 Texture makeNormalTextureFromHeight(ImageView<const Rgba8> image, Wrap wrap, float bump_scale);
 
-/// The alpha channel → alpha texture. `preserve_coverage` scales each mip so that the share of
-/// texels ≥ 0.5 stays that of level 0 (Castaño 2010): for AlphaMode::test.
+/// The alpha channel → alpha texture. `preserve_coverage`, for AlphaMode::test, scales each mip so
+/// that the share of texels ≥ 0.5 stays that of level 0 (Castaño 2010), and ends the chain where
+/// even so the covered area would change: fine wires are then undersampled, which accumulation
+/// cures, and not lost.
 AlphaTexture makeAlphaTexture(ImageView<const Rgba8> image, Wrap wrap, bool preserve_coverage);
 
 }  // namespace still

@@ -190,11 +190,7 @@ AlphaTexture paintChainLink(int cells, double wire, int size) {
         const double inside = 0.5 * wire - std::min(da, db);
         return Rgba8{255, 255, 255, toByte(255 * std::clamp(0.5 + inside / soft, 0.0, 1.0))};
     });
-    AlphaTexture texture = makeAlphaTexture(image.view(), Wrap::repeat, true);
-    while (texture.levels.size() > 1 && double(texture.levels.back().width) * wire < 1.5 * cells) {
-        texture.levels.pop_back();
-    }
-    return texture;
+    return makeAlphaTexture(image.view(), Wrap::repeat, true);
 }
 
 namespace {

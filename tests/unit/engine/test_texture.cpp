@@ -245,9 +245,13 @@ TEST_CASE("texture: a thin fence does not vanish in its mips", "[unit][engine]")
     }
     const AlphaTexture texture = makeAlphaTexture(constView(fence), Wrap::repeat, true);
     const double share = covered(texture, texture.levels[0]) / 65536.0;
-    for (size_t k = 1; k <= 3; ++k) {
-        const TextureLevel& level = texture.levels[k];
+    CHECK(texture.levels.size() >= 2);
+    CHECK(texture.levels.size() < 9);  // ended before the wires were lost
+    CHECK(texture.texels.size() == texture.levels.back().offset +
+                                       texture.levels.back().width * texture.levels.back().height +
+                                       4);
+    for (const TextureLevel& level : texture.levels) {
         CHECK(double(covered(texture, level)) / (level.width * level.height) ==
-              Approx(share).margin(0.1));
+              Approx(share).margin(0.05));
     }
 }
