@@ -35,12 +35,8 @@ constexpr int16_t kNoHistory = INT16_MIN;
 
 /// What is known about a tile once it is rasterized; later passes choose their loop by it.
 struct TileFacts {
-    bool moved = false;           ///< an instance that moved is here now or was in the last frame
-    bool camera_moved = false;    ///< same for all tiles of a frame
-    bool single_surface = false;  ///< every pixel shows `surface`
-    bool stochastic = false;      ///< a stochastically transparent surface was drawn here
-    uint16_t surface = 0;
-    uint32_t min_depth = 0, max_depth = 0;  ///< depth bits over the tile's pixels
+    bool moved = false;         ///< an instance that moved is here now or was in the last frame
+    bool camera_moved = false;  ///< same for all tiles of a frame
 
     /// Nothing in the tile changed place since the last frame: all motion is exactly zero.
     bool still() const { return !moved && !camera_moved; }

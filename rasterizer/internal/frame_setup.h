@@ -19,7 +19,6 @@ struct FrameSetup {
     size_t vertex_count = 0;
     int tiles_x = 0, tiles_y = 0;
     std::vector<uint8_t> moved_tiles;  ///< 1 where TileFacts::moved will be
-    bool stochastic = false;
 };
 
 void setUpFrame(const DrawList& list, const FrameView& view, const PlaneSet& planes,

@@ -175,25 +175,6 @@ TilePlanes planesAt(GBuffer& g, int x, int y) {
     return p;
 }
 
-void notePixels(const TileContext& tile, TileFacts& facts) {
-    const uint16_t first = tile.planes.id[0];
-    uint32_t different = 0;
-    int32_t low = INT32_MAX, high = 0;  // depth bits of values ≥ 0 sort as signed integers
-    for (int y = 0; y < tile.height; ++y) {
-        const uint16_t* id = tile.planes.id + y * tile.planes.stride;
-        const uint32_t* depth = tile.planes.depth + y * tile.planes.stride;
-        for (int x = 0; x < tile.width; ++x) {
-            different |= uint32_t(id[x] ^ first);
-            low = std::min(low, int32_t(depth[x]));
-            high = std::max(high, int32_t(depth[x]));
-        }
-    }
-    facts.single_surface = different == 0;
-    facts.surface = first & kSurfaceMask;
-    facts.min_depth = uint32_t(low);
-    facts.max_depth = uint32_t(high);
-}
-
 /// In a tile in which nothing moved, motion is zero and the expected depth is the depth itself.
 /// Called when the tile is shaded; zeros that stand already are left.
 void writeStillMotion(const TilePlanes& planes, int width, int height, uint8_t& motion_is_zero) {
@@ -235,11 +216,6 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
     facts = {};
     facts.camera_moved = frame.camera_moved;
     facts.moved = setup.moved_tiles[size_t(ty) * size_t(out.tiles_x) + size_t(tx)] != 0;
-    for (const TriangleRef& ref : scratch.refs) {
-        facts.stochastic |=
-            ref.triangle->alpha != 0 &&
-            frame.surfaces[ref.triangle->surface].material->alpha_mode == AlphaMode::stochastic;
-    }
     const TilePlanes planes = tile.planes;
     const bool still_motion = facts.still() && planes.motion != nullptr;
     uint8_t& motion_is_zero = out.motion_is_zero[size_t(ty) * size_t(out.tiles_x) + size_t(tx)];
@@ -263,7 +239,6 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
     if (still_motion) {
         writeStillMotion(planes, tile.width, tile.height, motion_is_zero);
     }
-    notePixels(tile, facts);
 }
 
 }  // namespace still::internal

@@ -102,7 +102,6 @@ void fill(const Options& options, Random& random, still::GBuffer& out) {
         facts = {};
         facts.camera_moved = options.camera_moved;
         facts.moved = random.chance(70);
-        facts.stochastic = random.chance(20);
     }
 }
 

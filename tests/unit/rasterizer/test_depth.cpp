@@ -133,33 +133,3 @@ TEST_CASE("depth: order of submission does not matter where depths differ", "[de
     }
     CHECK(wrong == 0);
 }
-
-TEST_CASE("depth: tile facts hold the range of the tile's depths", "[depth]") {
-    Random random(3);
-    const FrameView view = flatView(150, 90, random);
-    TestScene scene;
-    for (int k = 0; k < 30; ++k) {
-        addFlat(scene, view, FlatKind::ordinary, random);
-    }
-    GBuffer out;
-    draw(scene.list(), view, out);
-    for (int tile = 0; tile < int(out.tiles.size()); ++tile) {
-        uint32_t low = UINT32_MAX, high = 0;
-        bool single = true;
-        const int x0 = tile % out.tiles_x * kTileSize, y0 = tile / out.tiles_x * kTileSize;
-        for (int y = y0; y < std::min(y0 + kTileSize, view.height); ++y) {
-            for (int x = x0; x < std::min(x0 + kTileSize, view.width); ++x) {
-                low = std::min(low, out.depth.at(x, y));
-                high = std::max(high, out.depth.at(x, y));
-                single = single && out.id.at(x, y) == out.id.at(x0, y0);
-            }
-        }
-        const TileFacts& facts = out.tiles[size_t(tile)];
-        CHECK(facts.min_depth == low);
-        CHECK(facts.max_depth == high);
-        CHECK(facts.single_surface == single);
-        if (single) {
-            CHECK(facts.surface == (out.id.at(x0, y0) & kSurfaceMask));
-        }
-    }
-}

@@ -155,9 +155,7 @@ TEST_CASE("limits: an empty list gives the background", "[limits]") {
     CHECK(out.green.at(0, 0) == 2048);
     CHECK(out.blue.at(30, 30) == 65535);
     for (const TileFacts& facts : out.tiles) {
-        CHECK(facts.single_surface);
-        CHECK(facts.surface == 0);
-        CHECK(facts.max_depth == 0);
+        CHECK(facts.still());
     }
 }
 

@@ -237,7 +237,6 @@ TEST_CASE("stochastic: the share of samples is the opacity", "[alpha]") {
         const int count = covered(out, 1);
         total += count;
         CHECK(count / 6400.0 == Approx(double(opacity)).margin(0.04));
-        CHECK(out.tiles[0].stochastic);
     }
     CHECK(total / 6400.0 / kSamples == Approx(double(opacity)).margin(0.004));
     // Each pixel by itself converges, too: otherwise accumulation would freeze its noise.
