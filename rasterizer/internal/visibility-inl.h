@@ -63,6 +63,14 @@ HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangl
     return hn::Lt(draw, hn::Mul(alpha, splat(65536.0f)));
 }
 
+/// Lower bounds of the depths in each block. Every triangle raises depths, so an old bound stays a
+/// bound; it is worth renewing when several triangles have drawn into the block since.
+struct BlockBounds {
+    float min[kBlocksPerTile * kBlocksPerTile] = {};
+    uint8_t draws[kBlocksPerTile * kBlocksPerTile] = {};
+};
+constexpr int kDrawsBeforeRenewal = 4;
+
 /// One triangle in one tile.
 struct TriangleInTile {
     TileContext& tile;
@@ -70,19 +78,11 @@ struct TriangleInTile {
     const bool alpha;
     const TilePlane plane;
     const TileEdges& edges;
-    float* block_min;
+    BlockBounds& bounds;
 
-    /// Depth of 8 samples; x, y tile-local.
-    HWY_INLINE FVec depthAt(int x, float row_depth) const {
-        const FVec dx = hn::Sub(hn::Iota(FTag(), float(x)), splat(float(plane.x0)));
-        const FVec z = hn::Add(splat(row_depth), hn::Mul(splat(plane.dx), dx));
-        return hn::Min(hn::Max(z, splat(plane.min)), splat(plane.max));
-    }
-
-    /// Tests `lanes` samples from (x, y); returns the depths that stand there afterwards.
-    HWY_INLINE FVec testLanes(int x, int y, float row_depth, hn::Mask<ITag> covered) const {
+    /// Tests the samples of `covered` from (x, y); returns the depths that stand there afterwards.
+    HWY_INLINE FVec testLanes(int x, int y, FVec z, hn::Mask<ITag> covered) const {
         const int i = y * kTileSize + x;
-        const FVec z = depthAt(x, row_depth);
         const FVec old = hn::Load(FTag(), tile.depth + i);
         FMask pass = hn::And(hn::RebindMask(FTag(), covered), hn::Gt(z, old));
         if (alpha && !hn::AllFalse(FTag(), pass)) {
@@ -103,36 +103,67 @@ struct TriangleInTile {
         return now;
     }
 
-    /// Samples of the block that lie in [x0, x1] × [y0, y1], the triangle's bounds.
-    HWY_INLINE void block(int bx, int by, const int32_t corner[3], bool all_inside) const {
-        const int lanes = int(hn::Lanes(FTag()));
-        FVec nearest_kept = splat(3.0e38f);
+    /// The rows y0 … y1 of a group of columns from x; `corner` are edge values at (x, y0). Returns
+    /// the lane-wise smallest depths.
+    template <bool kAllInside>
+    HWY_INLINE FVec columns(int x, int y0, int y1, const int32_t corner[3]) const {
+        const IVec column = hn::Iota(ITag(), x);
+        const auto in_bounds =
+            hn::And(hn::Gt(column, splatInt(plane.x0 - 1)), hn::Lt(column, splatInt(plane.x1 + 1)));
+        const FVec along =
+            hn::Mul(splat(plane.dx), hn::Sub(hn::Iota(FTag(), float(x)), splat(float(plane.x0))));
+        IVec e[3];
+        for (int k = 0; k < 3 && !kAllInside; ++k) {
+            e[k] = hn::Add(splatInt(corner[k]), hn::Mul(hn::Iota(ITag(), 0), splatInt(edges.a[k])));
+        }
+        FVec lowest = splat(3.0e38f);
+        for (int y = y0; y <= y1; ++y) {
+            auto covered = in_bounds;
+            if constexpr (!kAllInside) {
+                const IVec outside = hn::Or(hn::Or(e[0], e[1]), e[2]);
+                covered = hn::And(covered, hn::Gt(outside, splatInt(-1)));
+                for (int k = 0; k < 3; ++k) {
+                    e[k] = hn::Add(e[k], splatInt(edges.b[k]));
+                }
+            }
+            const float row = plane.origin + plane.dy * float(y - plane.y0);
+            const FVec z =
+                hn::Min(hn::Max(hn::Add(splat(row), along), splat(plane.min)), splat(plane.max));
+            lowest = hn::Min(lowest, testLanes(x, y, z, covered));
+        }
+        return lowest;
+    }
+
+    /// The block's samples within the triangle's bounds; `corner` are edge values at (bx, by).
+    template <bool kAllInside>
+    HWY_INLINE void block(int bx, int by, const int32_t corner[3]) const {
+        const int y0 = std::max(by, plane.y0), y1 = std::min(by + kBlockSize - 1, plane.y1);
+        FVec lowest = splat(3.0e38f);
+        for (int x = bx; x < bx + kBlockSize; x += int(hn::Lanes(FTag()))) {
+            int32_t first[3];
+            for (int k = 0; k < 3; ++k) {
+                first[k] = corner[k] + edges.a[k] * (x - bx) + edges.b[k] * (y0 - by);
+            }
+            lowest = hn::Min(lowest, columns<kAllInside>(x, y0, y1, first));
+        }
+        const int b = by / kBlockSize * kBlocksPerTile + bx / kBlockSize;
+        if (y1 - y0 == kBlockSize - 1) {
+            bounds.min[b] = hn::GetLane(hn::MinOfLanes(FTag(), lowest));
+            bounds.draws[b] = 0;
+        } else {
+            bounds.draws[b] = uint8_t(std::min(bounds.draws[b] + 1, kDrawsBeforeRenewal));
+        }
+    }
+
+    HWY_INLINE void renewBound(int bx, int by, int b) const {
+        FVec lowest = splat(3.0e38f);
         for (int y = by; y < by + kBlockSize; ++y) {
-            const bool row_in_bounds = y >= plane.y0 && y <= plane.y1;
-            const float row_depth = plane.origin + plane.dy * float(y - plane.y0);
-            for (int x = bx; x < bx + kBlockSize; x += lanes) {
-                if (!row_in_bounds) {
-                    nearest_kept =
-                        hn::Min(nearest_kept, hn::Load(FTag(), tile.depth + y * kTileSize + x));
-                    continue;
-                }
-                const IVec column = hn::Iota(ITag(), x);
-                auto covered = hn::And(hn::Gt(column, splatInt(plane.x0 - 1)),
-                                       hn::Lt(column, splatInt(plane.x1 + 1)));
-                if (!all_inside) {
-                    const IVec dx = hn::Iota(ITag(), x - bx);
-                    IVec outside = hn::Zero(ITag());
-                    for (int k = 0; k < 3; ++k) {
-                        const IVec row = splatInt(corner[k] + edges.b[k] * (y - by));
-                        outside = hn::Or(outside, hn::Add(row, hn::Mul(dx, splatInt(edges.a[k]))));
-                    }
-                    covered = hn::And(covered, hn::Gt(outside, splatInt(-1)));
-                }
-                nearest_kept = hn::Min(nearest_kept, testLanes(x, y, row_depth, covered));
+            for (int x = bx; x < bx + kBlockSize; x += int(hn::Lanes(FTag()))) {
+                lowest = hn::Min(lowest, hn::Load(FTag(), tile.depth + y * kTileSize + x));
             }
         }
-        block_min[by / kBlockSize * kBlocksPerTile + bx / kBlockSize] =
-            hn::GetLane(hn::MinOfLanes(FTag(), nearest_kept));
+        bounds.min[b] = hn::GetLane(hn::MinOfLanes(FTag(), lowest));
+        bounds.draws[b] = 0;
     }
 
     /// The triangle's largest depth in a block: at the corner that its slopes point to.
@@ -142,12 +173,20 @@ struct TriangleInTile {
         return plane.at(plane.dx > 0.0f ? x1 : x0, plane.dy > 0.0f ? y1 : y0);
     }
 
+    HWY_INLINE bool hidden(int bx, int by) const {
+        const int b = by / kBlockSize * kBlocksPerTile + bx / kBlockSize;
+        const float nearest = nearestDepth(bx, by);
+        if (nearest > bounds.min[b] && bounds.draws[b] == kDrawsBeforeRenewal) {
+            renewBound(bx, by, b);
+        }
+        return !(nearest > bounds.min[b]);
+    }
+
     void allBlocks() const {
         constexpr int kLast = kBlockSize - 1;
         for (int by = plane.y0 & ~kLast; by <= plane.y1; by += kBlockSize) {
             for (int bx = plane.x0 & ~kLast; bx <= plane.x1; bx += kBlockSize) {
-                const int b = by / kBlockSize * kBlocksPerTile + bx / kBlockSize;
-                if (!(nearestDepth(bx, by) > block_min[b])) {
+                if (hidden(bx, by)) {
                     continue;
                 }
                 int32_t corner[3];
@@ -159,8 +198,13 @@ struct TriangleInTile {
                     outside |= corner[k] + high * kLast < 0;
                     all_inside &= corner[k] + low * kLast >= 0;
                 }
-                if (!outside) {
-                    block(bx, by, corner, all_inside);
+                if (outside) {
+                    continue;
+                }
+                if (all_inside) {
+                    block<true>(bx, by, corner);
+                } else {
+                    block<false>(bx, by, corner);
                 }
             }
         }
@@ -175,7 +219,7 @@ inline void clearTile(TileContext& tile) {
 }
 
 void rasterizeTile(TileContext& tile) {
-    float block_min[kBlocksPerTile * kBlocksPerTile] = {};
+    BlockBounds bounds;
     clearTile(tile);
     if (tile.forward) {
         shadeTileLevel<0>(tile);  // all background
@@ -184,7 +228,7 @@ void rasterizeTile(TileContext& tile) {
         const SetupTriangle& t = *tile.refs[ref].triangle;
         TileEdges edges;
         if (tileEdges(t, tile, edges)) {
-            TriangleInTile{tile, ref, t.alpha != 0, makeTilePlane(t, tile), edges, block_min}
+            TriangleInTile{tile, ref, t.alpha != 0, makeTilePlane(t, tile), edges, bounds}
                 .allBlocks();
         }
     }
