@@ -387,6 +387,12 @@ HWY_NOINLINE GroupOutput shadeMixedSurface(const Group& group, IVec refs, hn::Ma
 }
 
 template <int kLevel>
+HWY_NOINLINE GroupOutput shadeTriangle(const Group& group, uint32_t ref) {
+    const LaneTriangles<true> t{&group.tile->shade[ref]};
+    return shadeSurface<kLevel>(group, t, uint32_t(t.t->surface));
+}
+
+template <int kLevel>
 HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, ptrdiff_t at) {
     constexpr size_t kMaxLanes = 8;
     const size_t lanes = hn::Lanes(ITag());
@@ -397,8 +403,7 @@ HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, ptrdiff_
         if (first == kNothingVisible) {
             out = backgroundOutput(group);
         } else {
-            const LaneTriangles<true> t{&group.tile->shade[first]};
-            out = shadeSurface<kLevel>(group, t, uint32_t(t.t->surface));
+            out = shadeTriangle<kLevel>(group, first);
         }
         storeGroup(group, out, at);
         return;
@@ -416,8 +421,12 @@ HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, ptrdiff_
             continue;
         }
         const auto mask = hn::Eq(surfaces, splatInt(surface));
+        const uint32_t ref = visible[lane];
+        const auto others = hn::AndNot(hn::Eq(refs, splatInt(int32_t(ref))), mask);
         merge(out,
-              shadeMixedSurface<kLevel>(group, refs, mask, int(visible[lane]), uint32_t(surface)),
+              hn::AllFalse(ITag(), others)
+                  ? shadeTriangle<kLevel>(group, ref)
+                  : shadeMixedSurface<kLevel>(group, refs, mask, int(ref), uint32_t(surface)),
               mask);
         for (size_t other = lane; other < lanes; ++other) {
             surface_of[other] = surface_of[other] == surface ? 0 : surface_of[other];
