@@ -22,12 +22,12 @@ struct FrameSettings {
     SimdTarget simd = bestSimdTarget();
     Shading shading = Shading::deferred;
     PlaneSet planes;  ///< in addition to what the settings need
-    CameraChoice camera;
+    CameraChoice camera{};
     /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
     /// (a finished picture instead of a raw first frame).
     int subframes = 1;
     /// Returns milliseconds; when empty no times are taken.
-    std::function<double()> clock_ms;
+    std::function<double()> clock_ms{};
 };
 
 /// Milliseconds spent on one frame (summed over sub-frames and ssaa samples).

@@ -95,6 +95,8 @@ struct Scene {
     std::vector<AlphaTexture> alpha_textures;
     std::vector<SceneObject> objects;
     Camera camera;
+    std::optional<CameraFile>
+        camera_file;  ///< goes before `camera`, unless a view or an orbit is chosen
     /// The camera comes from frameScene() for 16:9; whoever knows the real aspect calls it again.
     bool automatic_camera = false;
     std::vector<NamedView> views;
@@ -103,7 +105,7 @@ struct Scene {
     std::vector<int> cuts;                              ///< frames whose camera has no past, sorted
     std::vector<std::string> warnings;                  ///< one line each, for standard error
 
-    uint64_t triangleCount() const;  ///< over all objects
+    uint64_t triangleCount() const;     ///< over all objects
     Bounds bounds(double frame) const;  ///< world box of all vertices
 };
 

@@ -79,8 +79,8 @@ CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
 }
 
 CameraState cameraAt(const Scene& scene, const CameraChoice& choice, int frame, double aspect) {
-    if (choice.file != nullptr) {
-        const CameraFileFrame& given = fileFrame(*choice.file, frame);
+    if (const CameraFile* file = cameraFileOf(scene, choice)) {
+        const CameraFileFrame& given = fileFrame(*file, frame);
         return {given.projection * given.view, eyeOf(given.view)};
     }
     const CameraPose pose = poseAt(scene, choice, frame);
@@ -146,8 +146,8 @@ std::vector<Instance> instancesAt(const Scene& scene, int frame, bool cut) {
 }
 
 bool cameraVaries(const Scene& scene, const CameraChoice& choice) {
-    if (choice.file != nullptr) {
-        const auto& frames = choice.file->frames;
+    if (const CameraFile* file = cameraFileOf(scene, choice)) {
+        const auto& frames = file->frames;
         return std::any_of(frames.begin(), frames.end(), [&](const CameraFileFrame& frame) {
             return frame.view != frames[0].view || frame.projection != frames[0].projection ||
                    frame.jitter_fx8 != frames[0].jitter_fx8;
@@ -160,6 +160,14 @@ bool cameraVaries(const Scene& scene, const CameraChoice& choice) {
 }
 
 }  // namespace
+
+const CameraFile* cameraFileOf(const Scene& scene, const CameraChoice& choice) {
+    if (choice.file != nullptr) {
+        return choice.file;
+    }
+    const bool own = scene.camera_file && choice.view < 0 && choice.orbit_deg == 0;
+    return own ? &*scene.camera_file : nullptr;
+}
 
 int lastCut(const Scene& scene, int frame) {
     const auto after = std::upper_bound(scene.cuts.begin(), scene.cuts.end(), frame);
@@ -178,8 +186,8 @@ FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int fram
     state.camera_before = state.cut ? state.camera : cameraAt(scene, choice, frame - 1, aspect);
     state.lighting_changed =
         !state.cut && !sameLight(state.lighting, lightingAt(scene.lights, frame - 1));
-    if (choice.file != nullptr) {
-        state.jitter_fx8 = fileFrame(*choice.file, frame).jitter_fx8;
+    if (const CameraFile* file = cameraFileOf(scene, choice)) {
+        state.jitter_fx8 = fileFrame(*file, frame).jitter_fx8;
     }
     return state;
 }

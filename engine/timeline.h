@@ -20,7 +20,7 @@ struct FrameState {
     std::vector<Instance> instances;  ///< with surfaces numbered, moved flags set
     Lighting lighting;
     CameraState camera, camera_before;
-    bool cut = false;              ///< first frame, or a cut: no past
+    bool cut = false;  ///< first frame, or a cut: no past
     bool lighting_changed = false;
     std::optional<std::array<int, 2>> jitter_fx8;  ///< given by a camera file
 };
@@ -33,6 +33,10 @@ struct CameraChoice {
     double orbit_deg = 0;              ///< circles the target by this angle over `orbit_frames`
     int orbit_frames = 1;
 };
+
+/// The explicit matrices that `choice` leads to, or null: the chosen file, or the scene's own
+/// unless a view or an orbit is chosen.
+const CameraFile* cameraFileOf(const Scene& scene, const CameraChoice& choice);
 
 /// State of frame `frame` ≥ 0. `width` and `height` give the aspect.
 FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,

@@ -129,19 +129,23 @@ Outcome<int> findView(const Scene& scene, const std::string& name) {
 Outcome<void> settleView(Job& job) {
     const RenderOptions& options = job.options;
     FrameSettings& settings = job.settings;
-    if (settings.camera.file != nullptr) {
-        settings.width = job.cameras.width;
-        settings.height = job.cameras.height;
-        job.frames = int(job.cameras.frames.size());
+    const Outcome<void> view = store(findView(job.scene, options.view), settings.camera.view);
+    if (!view) {
+        return view;
+    }
+    settings.camera.orbit_deg = options.orbit_deg;
+    if (const CameraFile* file = cameraFileOf(job.scene, settings.camera)) {
+        settings.width = file->width;
+        settings.height = file->height;
+        job.frames = int(file->frames.size());
     }
     const Size size = options.resolution.value_or(Size{settings.width, settings.height});
     settings.width = size.width;
     settings.height = size.height;
     job.frames = options.frames.value_or(job.frames);
     frameForAspect(job.scene, size);
-    settings.camera.orbit_deg = options.orbit_deg;
     settings.camera.orbit_frames = job.frames;
-    return store(findView(job.scene, options.view), settings.camera.view);
+    return {};
 }
 
 /// A single picture of something that stands still is finished before it is handed out.

@@ -8,6 +8,7 @@
 #include "engine/internal/obj.h"
 #include "engine/internal/obj_text.h"
 #include "engine/internal/tracks.h"
+#include "engine/load.h"
 #include "engine/shapes.h"
 #include "engine/timeline.h"
 
@@ -39,6 +40,7 @@ class SceneFileReader {
     uint32_t meshOf(const JsonCursor& obj);
     uint32_t shapeOf(const JsonCursor& shape, const Material& material);
     void readCamera(const JsonCursor& cursor);
+    void readCameraFile(const JsonCursor& file);
     void readViews(const JsonCursor& cursor);
     void readSingleLight(const JsonCursor& cursor);
     void readLights(const JsonCursor& cursor);
@@ -189,7 +191,24 @@ void SceneFileReader::readObjects() {
     }
 }
 
+void SceneFileReader::readCameraFile(const JsonCursor& file) {
+    Result<CameraFile> cameras = loadCameraFile(folder_ / file.text());
+    if (!cameras) {
+        file.refuse(cameras.error().message);
+        return;
+    }
+    report_.warnings.insert(report_.warnings.end(), cameras->warnings.begin(),
+                            cameras->warnings.end());
+    scene_.camera_file = std::move(*cameras);
+    scene_.automatic_camera = true;  // for views and orbits
+}
+
 void SceneFileReader::readCamera(const JsonCursor& cursor) {
+    if (const auto file = cursor.find("file")) {
+        cursor.expectKeys({"file"}, {"notes", "comment"});
+        readCameraFile(*file);
+        return;
+    }
     cursor.expectKeys({"eye", "target", "up", "fov_y_deg", "near", "far"}, {"notes", "comment"});
     Camera& camera = scene_.camera;
     if (const auto fov = cursor.find("fov_y_deg")) {
@@ -342,7 +361,7 @@ Result<Scene> SceneFileReader::read() {
     if (report_.error) {
         return tl::make_unexpected(*report_.error);
     }
-    if (camera) {
+    if (!scene_.automatic_camera) {
         chooseClipPlanes();
     }
     scene_.warnings.insert(scene_.warnings.begin(), report_.warnings.begin(),

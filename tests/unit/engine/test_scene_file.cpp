@@ -298,3 +298,20 @@ TEST_CASE("scene_file: every shared scene loads as it is", "[unit][scene_file][s
     }
     CHECK(count >= 9);
 }
+
+TEST_CASE("scene_file: the camera may be a file of matrices", "[unit][scene_file]") {
+    const ScratchScene scratch(R"({"obj": "quad.obj", "camera": {"file": "cameras.json"}})");
+    fs::copy_file(kData / "cameras.json", scratch.file().parent_path() / "cameras.json");
+    const auto scene = loadScene(scratch.file());
+    REQUIRE(scene);
+    REQUIRE(cameraFileOf(*scene, {}) == &*scene->camera_file);
+    CHECK(scene->camera_file->width == 320);
+    CHECK(frameStateAt(*scene, {}, 1, 320, 200).camera.eye == glm::dvec3(1, 2, 6));
+    // A view, an orbit and another file go before it.
+    CHECK(cameraFileOf(*scene, {.orbit_deg = 10}) == nullptr);
+    const CameraFile other{.width = 1, .height = 1, .frames = {{}}};
+    CHECK(cameraFileOf(*scene, {.file = &other}) == &other);
+    CHECK(frameStateAt(*scene, {.orbit_deg = 10}, 0, 320, 200).camera.eye != glm::dvec3(1, 2, 5));
+    CHECK(errorOf(R"({"obj": "quad.obj", "camera": {"file": "none.json"}})").find("/camera/file") !=
+          std::string::npos);
+}
