@@ -21,7 +21,7 @@ struct FrameSettings {
     ToneMap tone_map = ToneMap::none;
     SimdTarget simd = bestSimdTarget();
     Shading shading = Shading::deferred;
-    PlaneSet planes;  ///< in addition to what the settings need
+    PlaneSet planes{};  ///< in addition to what the settings need
     CameraChoice camera{};
     /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
     /// (a finished picture instead of a raw first frame).

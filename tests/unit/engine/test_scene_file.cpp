@@ -309,7 +309,7 @@ TEST_CASE("scene_file: the camera may be a file of matrices", "[unit][scene_file
     CHECK(frameStateAt(*scene, {}, 1, 320, 200).camera.eye == glm::dvec3(1, 2, 6));
     // A view, an orbit and another file go before it.
     CHECK(cameraFileOf(*scene, {.orbit_deg = 10}) == nullptr);
-    const CameraFile other{.width = 1, .height = 1, .frames = {{}}};
+    const CameraFile other{.width = 1, .height = 1, .frames = {{}}, .warnings = {}};
     CHECK(cameraFileOf(*scene, {.file = &other}) == &other);
     CHECK(frameStateAt(*scene, {.orbit_deg = 10}, 0, 320, 200).camera.eye != glm::dvec3(1, 2, 5));
     CHECK(errorOf(R"({"obj": "quad.obj", "camera": {"file": "none.json"}})").find("/camera/file") !=
