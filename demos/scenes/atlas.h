@@ -1,0 +1,39 @@
+#pragma once
+// The failure atlas: one small scene for each way in which temporal methods fail, with the frames
+// that show it and the measure that exposes it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene.h"
+
+namespace still {
+
+/// Frames that are measured together.
+struct AtlasSegment {
+    std::string name;          ///< "still", "moving", "first", "event"
+    int first = 0, last = 0;   ///< inclusive
+    int step = 1;              ///< every step-th frame is compared with a reference
+    int ssaa_samples = 256;    ///< of the reference
+};
+
+struct AtlasCase {
+    std::string name;     ///< "disocclusion"
+    std::string failure;  ///< one sentence: what goes wrong, and why
+    std::string measure;  ///< the metric that exposes it: a column of the atlas
+    Scene (*make)() = nullptr;
+    std::vector<AtlasSegment> segments;  ///< in order of frames
+    std::optional<int> event_frame;      ///< recovery is counted from here
+    std::optional<int> resize_frame;     ///< earlier frames are rendered at half the size
+    double orbit_deg = 0;                ///< per frame
+    bool slow = false;                   ///< left out unless asked for by name
+};
+
+/// All cases, in the order of the issue they answer. Scenes are made when asked for.
+const std::vector<AtlasCase>& atlasCases();
+
+/// Null when there is no such case.
+const AtlasCase* findAtlasCase(const std::string& name);
+
+}  // namespace still

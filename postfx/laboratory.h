@@ -1,0 +1,47 @@
+#pragma once
+// The published methods: history is one resampled image, blended with every new frame
+// (Method::recursive). Integer from end to end; presets run compiled for their own policy, any other
+// policy runs through the generic kernel, with the same bytes.
+
+#include <cstdint>
+#include <memory>
+
+#include "postfx/policy.h"
+#include "postfx/taa.h"
+#include "rasterizer/gbuffer.h"
+#include "rasterizer/simd.h"
+#include "rasterizer/workers.h"
+
+namespace still {
+
+/// What the frame loop knows and the pixels do not show.
+struct LaboratoryFrame {
+    bool reset = false;  ///< first frame, camera cut: there is no history
+    /// Where this frame's samples lie, from the pixels' centres, −128 … 127.
+    int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
+};
+
+/// Owns the history. resolve() must be called once per frame, in order.
+class Laboratory {
+  public:
+    Laboratory();
+    ~Laboratory();
+    Laboratory(const Laboratory&) = delete;
+    Laboratory& operator=(const Laboratory&) = delete;
+
+    /// `policy.method` is recursive. Needs the planes motion and, for tests of normals, normal. A
+    /// changed size or policy resets by itself.
+    void resolve(const GBuffer& gbuffer, const LaboratoryFrame& frame, const TaaPolicy& policy,
+                 SimdTarget simd, Workers& workers);
+
+    /// The resolved image, before sharpening; valid until the next resolve().
+    ColourPlanes colour() const;
+    /// 0 = only this frame's sample … 255 = history fully trusted; valid until the next resolve().
+    ImageView<const uint8_t> confidence() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace still

@@ -1,0 +1,124 @@
+#pragma once
+// Every choice that published temporal anti-aliasing methods make, as one value; and the named
+// recipes. Sources of the recipes and their figures: postfx/README.md.
+// All numbers are integers: q15 = 1/32768, fx8 = 1/256, so that a policy is exact and comparable,
+// and can be a template argument (presets are compiled for their own values).
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace still {
+
+/// Where in the pixel a frame's sample lies; the sequences are in engine/jitter.h.
+enum class JitterPattern : uint8_t {
+    none,
+    uniform2,
+    rgss4,
+    halton8,
+    halton16,
+    halton32,
+    hammersley4,
+    hammersley8,
+    hammersley16,
+    net16,
+    net32,
+    net64,  ///< centred (0,2)-net, Owen-scrambled: ours
+    r2,
+    blue_noise,
+};
+
+enum class Method : uint8_t {
+    gather,     ///< ours: postfx/taa.h
+    recursive,  ///< everybody else's: postfx/laboratory.h
+};
+enum class Blend : uint8_t {
+    fixed,       ///< alpha_q15
+    mean,        ///< 1/N, N up to count_cap
+    confidence,  ///< lerp(alpha_q15, 1, 1 − confidence)
+    velocity,    ///< alpha_q15 at rest, grows by velocity_alpha_q15 for each pixel of motion
+};
+enum class MotionSource : uint8_t { surfaces, camera };
+enum class Dilation : uint8_t { centre, nearest_depth, longest };
+enum class HistoryFilter : uint8_t {
+    nearest,
+    bilinear,
+    catmull_rom5,
+    catmull_rom16,
+    validated,  ///< bilinear 2×2, each tap tested; then 3×3; then the current sample
+};
+enum class SampleFilter : uint8_t {
+    box,
+    triangle,
+    gaussian,
+    blackman_harris,
+    mitchell,
+    catmull_rom,
+    b_spline,
+    lanczos2,
+};
+enum class Rectification : uint8_t {
+    off,
+    clamp,            ///< to the 3×3 minimum and maximum
+    clip,             ///< towards the box's centre, same box
+    variance_clip,    ///< towards the mean, box μ ± k σ
+    variance_clamp,   ///< to the same box
+    rounded_clip,     ///< mean of the 3×3 box and the plus-shaped box, towards its centre
+};
+enum class ColourSpace : uint8_t { rgb, ycocg };
+enum class AntiFlicker : uint8_t { none, inverse_luminance, inverse_log, luma_difference };
+enum class Tone : uint8_t { linear, reinhard };  ///< in which blending takes place
+
+struct TaaPolicy {
+    Method method = Method::gather;
+
+    JitterPattern jitter = JitterPattern::net64;
+    int jitter_scale_fx8 = 256;
+    bool scramble = false;  ///< another order of the samples in every cycle
+
+    // Method::gather
+    int ring = 8;  ///< raw frames kept, this one included: 1 … 16
+
+    // Method::recursive
+    Blend blend = Blend::fixed;
+    int alpha_q15 = 3277;           ///< share of the new sample
+    int count_cap = 64;             ///< Blend::mean
+    int velocity_alpha_q15 = 0;     ///< added per pixel of motion (Blend::velocity)
+    MotionSource motion = MotionSource::surfaces;
+    Dilation dilation = Dilation::nearest_depth;
+    HistoryFilter history = HistoryFilter::bilinear;
+    bool dering = false;            ///< hold the history filter within its inner taps
+    SampleFilter sample = SampleFilter::box;
+    Rectification rectification = Rectification::variance_clip;
+    ColourSpace space = ColourSpace::ycocg;
+    int sigma_fx8 = 256;            ///< k of μ ± kσ
+    // Tests of history; 0 = not made. One that fails rejects (or lowers confidence, if partial).
+    int depth_reject_q15 = 0;       ///< largest relative difference of depth
+    int normal_reject_q15 = 0;      ///< smallest cosine
+    bool id_reject = false;
+    int velocity_reject_fx8 = 0;    ///< largest difference of motion now and before, pixels
+    int luma_reject_q15 = 0;        ///< largest relative change of luminance
+    bool partial = false;
+    AntiFlicker anti_flicker = AntiFlicker::none;
+    Tone tone = Tone::linear;
+
+    // Both
+    int mip_bias_fx8 = 0;
+    int sharpness_q15 = 0;          ///< of the sharpening after the resolve
+
+    friend bool operator==(const TaaPolicy&, const TaaPolicy&) = default;
+};
+
+struct TaaPreset {
+    std::string_view name;
+    std::string_view about;  ///< one line: whose, and where its constants are published
+    TaaPolicy policy;
+};
+
+/// still, fast, tiny, then the published ones.
+std::span<const TaaPreset> taaPresets();
+
+/// Null when there is no such preset.
+const TaaPreset* findPreset(std::string_view name);
+
+}  // namespace still
