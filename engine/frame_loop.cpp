@@ -92,7 +92,7 @@ struct FrameLoop::State {
 void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset offset,
                                        uint32_t sample) {
     const DrawList list{.meshes = scene.meshes,
-                        .materials = scene.materials,
+                        .materials = materialsOf(scene, frame),
                         .textures = scene.textures,
                         .alpha_textures = scene.alpha_textures,
                         .instances = frame.instances,
@@ -120,6 +120,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
 static void freeze(FrameState& frame) {
     frame.cut = false;
     frame.lighting_changed = false;
+    frame.changed_surfaces.clear();
     frame.camera_before = frame.camera;
     for (Instance& instance : frame.instances) {
         instance.transform_before = instance.transform;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -32,6 +33,22 @@ struct ObjectTracks {
     Track<double> rotation_deg;
     glm::dvec3 rotation_axis{0, 1, 0};
     Track<glm::dvec3> scale;  ///< non-zero components
+};
+
+/// From `frame` on the animated material has the values of Scene::materials[material], until the
+/// next swap.
+struct MaterialSwap {
+    int frame = 0;
+    uint32_t material = 0;
+};
+
+/// What happens to one of Scene::materials over time: first the swaps choose its values, then the
+/// offset is added to the texture coordinates (see Material::u_offset), in repeats of the texture.
+/// Flip books and screens are swaps, scrolling textures and light that wanders are offsets.
+struct MaterialTracks {
+    uint32_t material = 0;            ///< which one; each at most once in Scene::material_tracks
+    Track<glm::dvec2> offset;         ///< u to the right, v upwards
+    std::vector<MaterialSwap> swaps;  ///< strictly increasing frames
 };
 
 /// world = T(frame) · R(frame) · S(frame) · base
@@ -93,6 +110,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<AlphaTexture> alpha_textures;
+    std::vector<MaterialTracks> material_tracks;
     std::vector<SceneObject> objects;
     Camera camera;
     std::optional<CameraFile>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "engine/det_math.h"
@@ -145,6 +146,74 @@ std::vector<Instance> instancesAt(const Scene& scene, int frame, bool cut) {
     return instances;
 }
 
+bool allTexturesRepeat(const Scene& scene, const Material& material) {
+    const auto repeats = [](const auto& textures, int32_t texture) {
+        return texture == kNoTexture || textures[size_t(texture)].wrap == Wrap::repeat;
+    };
+    return repeats(scene.textures, material.colour_texture) &&
+           repeats(scene.textures, material.normal_texture) &&
+           repeats(scene.alpha_textures, material.alpha_texture);
+}
+
+/// The material that `tracks` are of, as it is in `frame`.
+Material materialAt(const Scene& scene, const MaterialTracks& tracks, int frame) {
+    uint32_t source = tracks.material;
+    for (const MaterialSwap& swap : tracks.swaps) {
+        source = swap.frame <= frame ? swap.material : source;
+    }
+    Material material = scene.materials[source];
+    if (!tracks.offset.keys.empty()) {
+        glm::dvec2 offset = glm::dvec2(double(material.u_offset), double(material.v_offset)) +
+                            valueAt(tracks.offset, frame, glm::dvec2(0));
+        if (allTexturesRepeat(scene, material)) {
+            offset -= glm::dvec2(std::floor(offset.x), std::floor(offset.y));
+        }
+        material.u_offset = float(offset.x);
+        material.v_offset = float(offset.y);
+    }
+    return material;
+}
+
+std::vector<Material> materialsAt(const Scene& scene, int frame) {
+    if (scene.material_tracks.empty()) {
+        return {};
+    }
+    std::vector<Material> materials = scene.materials;
+    for (const MaterialTracks& tracks : scene.material_tracks) {
+        materials[tracks.material] = materialAt(scene, tracks, frame);
+    }
+    return materials;
+}
+
+/// See FrameState::changed_surfaces.
+std::vector<uint64_t> changedSurfaces(const Scene& scene, int frame) {
+    std::vector<uint8_t> changed(scene.materials.size(), 0);
+    for (const MaterialTracks& tracks : scene.material_tracks) {
+        changed[tracks.material] =
+            materialAt(scene, tracks, frame) != materialAt(scene, tracks, frame - 1) ? 1 : 0;
+    }
+    std::vector<uint64_t> surfaces;
+    uint32_t surface = 1;
+    for (const SceneObject& object : scene.objects) {
+        for (const MeshPart& part : scene.meshes[object.mesh].parts) {
+            if (changed[part.material] != 0) {
+                surfaces.resize(std::max(surfaces.size(), size_t(surface / 64 + 1)));
+                surfaces[surface / 64] |= uint64_t{1} << (surface % 64);
+            }
+            ++surface;
+        }
+    }
+    return surfaces;
+}
+
+bool materialVaries(const Scene& scene, const MaterialTracks& tracks) {
+    const Material first = materialAt(scene, tracks, 0);
+    return varies(tracks.offset) ||
+           std::any_of(tracks.swaps.begin(), tracks.swaps.end(), [&](const MaterialSwap& swap) {
+               return swap.frame > 0 && materialAt(scene, tracks, swap.frame) != first;
+           });
+}
+
 bool cameraVaries(const Scene& scene, const CameraChoice& choice) {
     if (const CameraFile* file = cameraFileOf(scene, choice)) {
         const auto& frames = file->frames;
@@ -186,10 +255,18 @@ FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int fram
     state.camera_before = state.cut ? state.camera : cameraAt(scene, choice, frame - 1, aspect);
     state.lighting_changed =
         !state.cut && !sameLight(state.lighting, lightingAt(scene.lights, frame - 1));
+    state.materials = materialsAt(scene, frame);
+    if (!scene.material_tracks.empty() && !state.cut) {
+        state.changed_surfaces = changedSurfaces(scene, frame);
+    }
     if (const CameraFile* file = cameraFileOf(scene, choice)) {
         state.jitter_fx8 = fileFrame(*file, frame).jitter_fx8;
     }
     return state;
+}
+
+std::span<const Material> materialsOf(const Scene& scene, const FrameState& state) {
+    return state.materials.empty() ? scene.materials : state.materials;
 }
 
 bool isStill(const Scene& scene, const CameraChoice& choice) {
@@ -198,7 +275,10 @@ bool isStill(const Scene& scene, const CameraChoice& choice) {
     const bool objects_move =
         std::any_of(scene.objects.begin(), scene.objects.end(),
                     [](const SceneObject& object) { return varies(object.tracks); });
-    return !has_cuts && !objects_move && !lightingVaries(scene.lights) &&
+    const bool materials_change =
+        std::any_of(scene.material_tracks.begin(), scene.material_tracks.end(),
+                    [&](const MaterialTracks& tracks) { return materialVaries(scene, tracks); });
+    return !has_cuts && !objects_move && !materials_change && !lightingVaries(scene.lights) &&
            !cameraVaries(scene, choice);
 }
 

@@ -2,7 +2,9 @@
 // Frame N of a scene: what stands where, and what changed since frame N−1. A pure function.
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/scene.h"
@@ -22,6 +24,11 @@ struct FrameState {
     CameraState camera, camera_before;
     bool cut = false;  ///< first frame, or a cut: no past
     bool lighting_changed = false;
+    /// Those of this frame; empty while the scene's own are drawn, see materialsOf().
+    std::vector<Material> materials;
+    /// Bit s % 64 of word s / 64 is set for each surface s whose material differs from that of the
+    /// frame before; words that are missing are 0. Empty: none differs, or a cut.
+    std::vector<uint64_t> changed_surfaces;
     std::optional<std::array<int, 2>> jitter_fx8;  ///< given by a camera file
 };
 
@@ -42,10 +49,14 @@ const CameraFile* cameraFileOf(const Scene& scene, const CameraChoice& choice);
 FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,
                         int height);
 
+/// The materials to draw `state` with; valid as long as both arguments.
+std::span<const Material> materialsOf(const Scene& scene, const FrameState& state);
+
 /// The last frame ≤ `frame` that has no past: 0 or one of the scene's cuts.
 int lastCut(const Scene& scene, int frame);
 
-/// True when no frame differs from frame 0 (no animation, orbit, cut or moving camera file).
+/// True when no frame differs from frame 0 (no animation of objects, materials, lights or
+/// camera, no orbit, cut or moving camera file).
 bool isStill(const Scene& scene, const CameraChoice& choice);
 
 /// Surfaces of the scene: the objects' mesh parts in order. Loaders refuse more than kMaxSurfaces,

@@ -91,6 +91,11 @@ struct Material {
     int32_t colour_texture = kNoTexture;  ///< into DrawList::textures
     int32_t normal_texture = kNoTexture;  ///< into DrawList::textures; needs tangents
     int32_t alpha_texture = kNoTexture;   ///< into DrawList::alpha_textures
+    /// Added to the interpolated texture coordinates: 1 = one repeat of the texture, v upwards.
+    /// Keep it within ±1 where textures repeat, so that no precision is lost.
+    float u_offset = 0.0f, v_offset = 0.0f;
+
+    friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// Affine transform, row-major 3×4: p' = M · (p, 1).
