@@ -89,7 +89,7 @@ void Rasterizer::transformAndBin(const DrawList& list, const FrameView& view,
                                  const RasterSettings& settings, Workers& workers) {
     State& s = *state_;
     s.settings = settings;
-    internal::setUpFrame(list, view, settings.planes, s.setup);
+    internal::setUpFrame(list, view, settings, s.setup);
     s.cutVertices(list);
     const internal::RasterKernels& kernels = internal::kernelsFor(settings.simd);
     workers.parallelFor(int(s.vertex_chunks.size()), 1, [&](int begin, int end, int) {

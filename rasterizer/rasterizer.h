@@ -21,6 +21,12 @@ struct RasterSettings {
     SimdTarget simd = bestSimdTarget();
     Shading shading = Shading::deferred;
     PlaneSet planes;
+    /// Added to the level of detail of every texture, in 1/256 level; the level stays within the
+    /// chain. −4096 … 4096, negative is sharper.
+    int mip_bias_fx8 = 0;
+    /// The motion plane follows the camera alone, as if nothing else moved (depth and inverse
+    /// view-projection are all that some methods have). Moved bits of ids are the same.
+    bool camera_motion_only = false;
 };
 
 struct RasterCounters {

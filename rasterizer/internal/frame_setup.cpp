@@ -139,8 +139,9 @@ class MovedTiles {
     const FrameView& view_;
 };
 
-void setUpInstance(const DrawList& list, const FrameView& view, const Matrix& clip_now,
-                   const Matrix& clip_before, uint32_t index, FrameSetup& out) {
+void setUpInstance(const DrawList& list, const FrameView& view, const RasterSettings& settings,
+                   const Matrix& clip_now, const Matrix& clip_before, uint32_t index,
+                   FrameSetup& out) {
     const Instance& instance = list.instances[index];
     const Mesh& mesh = list.meshes[instance.mesh];
     assert(instance.first_surface == out.surfaces.size());
@@ -148,6 +149,7 @@ void setUpInstance(const DrawList& list, const FrameView& view, const Matrix& cl
     s.world = instance.transform;
     s.identity = instance.identity;
     s.moved = instance.moved;
+    s.own_motion = instance.moved && !settings.camera_motion_only;
     const Matrix now = clip_now * fromAffine(instance.transform);
     s.clip = toFloat(now);
     s.mirrored = normalMatrix(instance.transform, s.normal);
@@ -169,15 +171,17 @@ void setUpInstance(const DrawList& list, const FrameView& view, const Matrix& cl
     out.vertex_count += mesh.vertexCount();
     for (const MeshPart& part : mesh.parts) {
         out.surfaces.push_back(makeSurface(list, instance, index, part));
+        out.surfaces.back().mip_bias_fx8 = settings.mip_bias_fx8;
     }
 }
 
 }  // namespace
 
-void setUpFrame(const DrawList& list, const FrameView& view, const PlaneSet& planes,
+void setUpFrame(const DrawList& list, const FrameView& view, const RasterSettings& settings,
                 FrameSetup& out) {
     assert(view.width >= 1 && view.width <= kMaxTargetSize);
     assert(view.height >= 1 && view.height <= kMaxTargetSize);
+    assert(settings.mip_bias_fx8 >= -4096 && settings.mip_bias_fx8 <= 4096);
     out.tiles_x = (view.width + kTileSize - 1) / kTileSize;
     out.tiles_y = (view.height + kTileSize - 1) / kTileSize;
     out.moved_tiles.assign(size_t(out.tiles_x) * size_t(out.tiles_y), 0);
@@ -190,14 +194,14 @@ void setUpFrame(const DrawList& list, const FrameView& view, const PlaneSet& pla
     const Matrix clip_now = reverseDepth(fromGlm(view.view_projection));
     const Matrix clip_before = reverseDepth(fromGlm(view.view_projection_before));
     for (uint32_t i = 0; i < list.instances.size(); ++i) {
-        setUpInstance(list, view, clip_now, clip_before, i, out);
+        setUpInstance(list, view, settings, clip_now, clip_before, i, out);
     }
     assert(out.surfaces.size() <= kMaxSurfaces + 1);
 
     FrameTables& t = out.tables;
     t.list = &list;
     t.view = &view;
-    t.planes = planes;
+    t.planes = settings.planes;
     t.camera_moved = view.view_projection != view.view_projection_before;
     // Of a camera that stands still exactly the identity, so that its motion is exactly zero.
     t.reproject = fromAffine(kIdentity);

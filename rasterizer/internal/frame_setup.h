@@ -21,7 +21,7 @@ struct FrameSetup {
     std::vector<uint8_t> moved_tiles;  ///< 1 where TileFacts::moved will be
 };
 
-void setUpFrame(const DrawList& list, const FrameView& view, const PlaneSet& planes,
+void setUpFrame(const DrawList& list, const FrameView& view, const RasterSettings& settings,
                 FrameSetup& out);
 
 /// FrameTables::reproject for one tile: from and to pixel coordinates relative to the tile.

@@ -105,6 +105,7 @@ struct Surface {
     uint32_t instance = 0;
     uint8_t features = 0;
     int shininess = 0;  ///< 0 = no highlight
+    int mip_bias_fx8 = 0;
 };
 
 struct InstanceSetup {
@@ -114,6 +115,7 @@ struct InstanceSetup {
     bool identity = true;
     bool mirrored = false;  ///< the transform turns triangles inside out
     bool moved = false;
+    bool own_motion = false;            ///< moved, and the motion plane shows it
     MatrixF pixels_now, pixels_before;  ///< object → (x_px·w, y_px·w, z', w); only when moved
 };
 

@@ -147,7 +147,8 @@ HWY_INLINE LaneTexture textureCoordinates(const Triangles& t, const LaneBarycent
     return c;
 }
 
-HWY_INLINE IVec mipLevel_fx8(const LaneTexture& c, const std::vector<TextureLevel>& levels) {
+HWY_INLINE IVec mipLevel_fx8(const LaneTexture& c, const std::vector<TextureLevel>& levels,
+                             int bias_fx8) {
     const FVec w = splat(float(levels[0].width)), h = splat(float(levels[0].height));
     const FVec ax = hn::Mul(c.du_dx, w), bx = hn::Mul(c.dv_dx, h);
     const FVec ay = hn::Mul(c.du_dy, w), by = hn::Mul(c.dv_dy, h);
@@ -163,7 +164,8 @@ HWY_INLINE IVec mipLevel_fx8(const LaneTexture& c, const std::vector<TextureLeve
     const FVec t = hn::Sub(hn::BitCast(FTag(), mantissa), splat(1.0f));
     const FVec inner = hn::Add(splat(kLog2C2), hn::Mul(t, splat(kLog2C3)));
     const FVec poly = hn::Mul(t, hn::Add(splat(kLog2C1), hn::Mul(t, inner)));
-    const IVec lod = roundLanes(FTag(), hn::Mul(hn::Add(exponent, poly), splat(128.0f)));
+    const IVec lod = hn::Add(roundLanes(FTag(), hn::Mul(hn::Add(exponent, poly), splat(128.0f))),
+                             splatInt(bias_fx8));
     return hn::Min(hn::Max(lod, splatInt(0)), splatInt((int32_t(levels.size()) - 1) * 256));
 }
 
@@ -265,8 +267,9 @@ struct LaneMip {
     bool single;  ///< all fractions are zero (magnified textures): the second level adds nothing
 };
 
-HWY_INLINE LaneMip mipOf(const LaneTexture& c, const std::vector<TextureLevel>& levels) {
-    const IVec lod = mipLevel_fx8(c, levels);
+HWY_INLINE LaneMip mipOf(const LaneTexture& c, const std::vector<TextureLevel>& levels,
+                         int bias_fx8) {
+    const IVec lod = mipLevel_fx8(c, levels, bias_fx8);
     LaneMip m;
     m.level0 = hn::ShiftRight<8>(lod);
     m.level1 = hn::Min(hn::Add(m.level0, splatInt(1)), splatInt(int32_t(levels.size()) - 1));
@@ -277,8 +280,8 @@ HWY_INLINE LaneMip mipOf(const LaneTexture& c, const std::vector<TextureLevel>& 
 }
 
 template <bool kSquare>
-HWY_INLINE Vec3 sampleTexture(const Texture& texture, const LaneTexture& c) {
-    const LaneMip m = mipOf(c, texture.levels);
+HWY_INLINE Vec3 sampleTexture(const Texture& texture, const LaneTexture& c, int bias_fx8) {
+    const LaneMip m = mipOf(c, texture.levels, bias_fx8);
     const Vec3 a = sampleLevel<kSquare>(texture, m.level0, c.u, c.v);
     if (m.single) {
         return a;
@@ -299,8 +302,8 @@ HWY_INLINE FVec sampleAlphaLevel(const AlphaTexture& texture, IVec level, FVec u
     return bilinear(f, t);
 }
 
-HWY_INLINE FVec sampleAlpha(const AlphaTexture& texture, const LaneTexture& c) {
-    const LaneMip m = mipOf(c, texture.levels);
+HWY_INLINE FVec sampleAlpha(const AlphaTexture& texture, const LaneTexture& c, int bias_fx8) {
+    const LaneMip m = mipOf(c, texture.levels, bias_fx8);
     FVec alpha = sampleAlphaLevel(texture, m.level0, c.u, c.v);
     if (!m.single) {
         const FVec coarser = sampleAlphaLevel(texture, m.level1, c.u, c.v);

@@ -81,7 +81,7 @@ HWY_INLINE Vec3 shadingNormal(const LaneTriangles<kUniform>& t, const LaneBaryce
         if (s.normal != nullptr) {
             const Vec3 tangent = worldTangent(t, p, s, instance);
             const FVec handedness = t.vertexField(s.tangents, kTangentStride, 3, 0);
-            n = bumped(n, tangent, handedness, sampleTexture<false>(*s.normal, c));
+            n = bumped(n, tangent, handedness, sampleTexture<false>(*s.normal, c, s.mip_bias_fx8));
         }
     }
     return scale3(n, t.word(kWordFlip));
@@ -271,7 +271,7 @@ HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUni
     const Material& m = *s.material;
     Vec3 albedo{splat(m.diffuse[0]), splat(m.diffuse[1]), splat(m.diffuse[2])};
     if (kLevel >= 1 && s.colour != nullptr) {
-        const Vec3 texel = sampleTexture<true>(*s.colour, c);
+        const Vec3 texel = sampleTexture<true>(*s.colour, c, s.mip_bias_fx8);
         const FVec linear = splat(kTexelToLinear);
         albedo = {hn::Mul(albedo.x, hn::Mul(texel.x, linear)),
                   hn::Mul(albedo.y, hn::Mul(texel.y, linear)),
@@ -298,8 +298,8 @@ HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUni
         out.normal = packOctahedral(n);
     }
     if (group.tile->planes.motion != nullptr) {
-        setMotion(instance.moved ? reprojectMoved(instance, objectPosition(t, p, s))
-                                 : reprojectStatic(group),
+        setMotion(instance.own_motion ? reprojectMoved(instance, objectPosition(t, p, s))
+                                      : reprojectStatic(group),
                   out);
     }
     return out;

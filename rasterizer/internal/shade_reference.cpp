@@ -77,7 +77,8 @@ TextureCoordinates textureCoordinates(const PixelBarycentrics& p, const float* a
 }
 
 /// log2 of the longer axis of the pixel's footprint, in 1/256 levels, within the chain.
-int mipLevel_fx8(const TextureCoordinates& c, const std::vector<TextureLevel>& levels) {
+int mipLevel_fx8(const TextureCoordinates& c, const std::vector<TextureLevel>& levels,
+                 int bias_fx8) {
     const float w = float(levels[0].width), h = float(levels[0].height);
     const float ax = c.du_dx * w, bx = c.dv_dx * h, ay = c.du_dy * w, by = c.dv_dy * h;
     const float rho2 =
@@ -86,7 +87,7 @@ int mipLevel_fx8(const TextureCoordinates& c, const std::vector<TextureLevel>& l
     const float exponent = float(int32_t(bits >> 23) - 127);
     const float t = std::bit_cast<float>((bits & 0x007FFFFFu) | 0x3F800000u) - 1.0f;
     const float log2 = exponent + t * (kLog2C1 + t * (kLog2C2 + t * kLog2C3));
-    return std::clamp(roundToInt(log2 * 128.0f), 0, (int(levels.size()) - 1) * 256);
+    return std::clamp(roundToInt(log2 * 128.0f) + bias_fx8, 0, (int(levels.size()) - 1) * 256);
 }
 
 /// The four texels around a point of one level, and the fractions between them.
@@ -152,8 +153,8 @@ Float3 sampleLevel(const Texture& texture, const TextureLevel& level, float u, f
 
 /// Raw texel units: squared for colour, 0 … 1023 for normal maps.
 template <bool kSquare>
-Float3 sampleTexture(const Texture& texture, const TextureCoordinates& c) {
-    const int lod_fx8 = mipLevel_fx8(c, texture.levels);
+Float3 sampleTexture(const Texture& texture, const TextureCoordinates& c, int bias_fx8) {
+    const int lod_fx8 = mipLevel_fx8(c, texture.levels, bias_fx8);
     const int level0 = lod_fx8 >> 8;
     const int level1 = std::min(level0 + 1, int(texture.levels.size()) - 1);
     const float fraction = float(lod_fx8 & 255) * (1.0f / 256.0f);
@@ -163,8 +164,8 @@ Float3 sampleTexture(const Texture& texture, const TextureCoordinates& c) {
             a.z + (b.z - a.z) * fraction};
 }
 
-float sampleAlpha(const AlphaTexture& texture, const TextureCoordinates& c) {
-    const int lod_fx8 = mipLevel_fx8(c, texture.levels);
+float sampleAlpha(const AlphaTexture& texture, const TextureCoordinates& c, int bias_fx8) {
+    const int lod_fx8 = mipLevel_fx8(c, texture.levels, bias_fx8);
     const int level0 = lod_fx8 >> 8;
     const int level1 = std::min(level0 + 1, int(texture.levels.size()) - 1);
     float value[2];
@@ -223,7 +224,7 @@ Float3 shadingNormal(const PixelBarycentrics& p, const Surface& s, const Instanc
         const Float3 t = worldTangent(p, s, instance);
         const float handedness = s.tangents[p.triangle->vertex[0] * kTangentStride + 3];
         const Float3 b = scale(cross(n, t), handedness);
-        const Float3 raw = sampleTexture<false>(*s.normal, c);
+        const Float3 raw = sampleTexture<false>(*s.normal, c, s.mip_bias_fx8);
         const float x = raw.x * kTexelToNormal - 1.0f;
         const float y = raw.y * kTexelToNormal - 1.0f;
         const float z = raw.z * kTexelToNormal - 1.0f;
@@ -365,7 +366,7 @@ Float3 surfaceColour(const TileContext& tile, const PixelBarycentrics& p, const 
     const Lit lit = lightSurface(tile, p, s, instance, n);
     Float3 albedo = toFloat3(m.diffuse);
     if (s.colour != nullptr) {
-        const Float3 texel = sampleTexture<true>(*s.colour, c);
+        const Float3 texel = sampleTexture<true>(*s.colour, c, s.mip_bias_fx8);
         albedo = {albedo.x * (texel.x * kTexelToLinear), albedo.y * (texel.y * kTexelToLinear),
                   albedo.z * (texel.z * kTexelToLinear)};
     }
@@ -401,7 +402,7 @@ bool alphaPasses(const TileContext& tile, const ShadeTriangle& t, int x, int y) 
     float alpha = s.material->opacity;
     if (s.alpha != nullptr) {
         const PixelBarycentrics p = barycentricsAt(t, x, y);
-        alpha = alpha * sampleAlpha(*s.alpha, textureCoordinates(p, s.attributes));
+        alpha = alpha * sampleAlpha(*s.alpha, textureCoordinates(p, s.attributes), s.mip_bias_fx8);
     }
     if (s.material->alpha_mode == AlphaMode::test) {
         return alpha >= 0.5f;
@@ -421,7 +422,7 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
     Float3 colour = toFloat3(frame.list->background);
     uint16_t id = 0;
     uint32_t normal = 0;
-    bool moved = false;
+    bool own_motion = false;
     if (triangle != nullptr) {
         const Surface& s = frame.surfaces[triangle->surface];
         const InstanceSetup& instance = frame.instances[s.instance];
@@ -433,9 +434,9 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
         const Float3 n = shadingNormal(p, s, instance, c);
         colour = surfaceColour(tile, p, s, instance, n, c);
         normal = packOctahedral(n);
-        moved = instance.moved;
-        id = uint16_t(triangle->surface | (moved ? kMovedBit : 0));
-        if (moved && tile.planes.motion != nullptr) {
+        own_motion = instance.own_motion;
+        id = uint16_t(triangle->surface | (instance.moved ? kMovedBit : 0));
+        if (own_motion && tile.planes.motion != nullptr) {
             storeMotion(tile, at, reprojectMoved(instance, objectPosition(p, s)));
         }
     }
@@ -447,7 +448,7 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
     if (tile.planes.normal != nullptr) {
         tile.planes.normal[at] = normal;
     }
-    if (tile.planes.motion != nullptr && !moved) {
+    if (tile.planes.motion != nullptr && !own_motion) {
         storeMotion(tile, at, reprojectStatic(tile, x, y, depth));
     }
 }
