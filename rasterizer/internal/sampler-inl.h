@@ -122,9 +122,11 @@ struct LaneTexture {
     FVec du_dx, du_dy, dv_dx, dv_dy;
 };
 
+/// The slopes are those of the mesh's own coordinates: an offset leaves the mip level as it is.
 template <class Triangles>
 HWY_INLINE LaneTexture textureCoordinates(const Triangles& t, const LaneBarycentrics& p,
-                                          const float* attributes) {
+                                          const Surface& s) {
+    const float* attributes = s.attributes;
     FVec dx[3], dy[3], u[3], v[3];
     for (int k = 0; k < 3; ++k) {
         dx[k] = t.word(kWordDx + k);
@@ -144,6 +146,8 @@ HWY_INLINE LaneTexture textureCoordinates(const Triangles& t, const LaneBarycent
     c.du_dy = slope(dy, u, c.u, sum_dy);
     c.dv_dx = slope(dx, v, c.v, sum_dx);
     c.dv_dy = slope(dy, v, c.v, sum_dy);
+    c.u = hn::Add(c.u, splat(s.material->u_offset));
+    c.v = hn::Add(c.v, splat(s.material->v_offset));
     return c;
 }
 

@@ -264,7 +264,7 @@ HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUni
     const LaneBarycentrics p = barycentrics(t, group.x, group.y);
     LaneTexture c{};
     if (kLevel >= 1 && (s.features & (kShadeTexture | kShadeNormalMap)) != 0) {
-        c = textureCoordinates(t, p, s.attributes);
+        c = textureCoordinates(t, p, s);
     }
     const Vec3 n = shadingNormal<kLevel >= 2>(t, p, s, instance, c);
     const LaneLight lit = lightSurface<kLevel >= 2>(group, t, p, s, instance, n);

@@ -54,8 +54,10 @@ struct TextureCoordinates {
     float du_dx, du_dy, dv_dx, dv_dy;  ///< per pixel
 };
 
-TextureCoordinates textureCoordinates(const PixelBarycentrics& p, const float* attributes) {
+/// The slopes are those of the mesh's own coordinates: an offset leaves the mip level as it is.
+TextureCoordinates textureCoordinates(const PixelBarycentrics& p, const Surface& s) {
     const ShadeTriangle& t = *p.triangle;
+    const float* attributes = s.attributes;
     TextureCoordinates c;
     c.u = attribute(p, attributes, kAttributeStride, 3);
     c.v = attribute(p, attributes, kAttributeStride, 4);
@@ -73,6 +75,8 @@ TextureCoordinates textureCoordinates(const PixelBarycentrics& p, const float* a
     c.du_dy = slope(t.p_dy, u, c.u, sum_dy);
     c.dv_dx = slope(t.p_dx, v, c.v, sum_dx);
     c.dv_dy = slope(t.p_dy, v, c.v, sum_dy);
+    c.u = c.u + s.material->u_offset;
+    c.v = c.v + s.material->v_offset;
     return c;
 }
 
@@ -402,7 +406,7 @@ bool alphaPasses(const TileContext& tile, const ShadeTriangle& t, int x, int y) 
     float alpha = s.material->opacity;
     if (s.alpha != nullptr) {
         const PixelBarycentrics p = barycentricsAt(t, x, y);
-        alpha = alpha * sampleAlpha(*s.alpha, textureCoordinates(p, s.attributes), s.mip_bias_fx8);
+        alpha = alpha * sampleAlpha(*s.alpha, textureCoordinates(p, s), s.mip_bias_fx8);
     }
     if (s.material->alpha_mode == AlphaMode::test) {
         return alpha >= 0.5f;
@@ -429,7 +433,7 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
         const PixelBarycentrics p = barycentricsAt(*triangle, x, y);
         TextureCoordinates c{};
         if ((s.features & (kShadeTexture | kShadeNormalMap)) != 0) {
-            c = textureCoordinates(p, s.attributes);
+            c = textureCoordinates(p, s);
         }
         const Float3 n = shadingNormal(p, s, instance, c);
         colour = surfaceColour(tile, p, s, instance, n, c);

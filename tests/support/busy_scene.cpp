@@ -75,6 +75,10 @@ void addMaterials(TestScene& scene, Random& random) {
         if (k % 7 == 0) {
             m.emission = colour(random, 12);
         }
+        if (k % 6 < 2) {
+            m.u_offset = 0.37f;
+            m.v_offset = -0.84f;
+        }
         scene.materials.push_back(m);
     }
 }
