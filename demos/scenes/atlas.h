@@ -12,10 +12,10 @@ namespace still {
 
 /// Frames that are measured together.
 struct AtlasSegment {
-    std::string name;          ///< "still", "moving", "first", "event"
-    int first = 0, last = 0;   ///< inclusive
-    int step = 1;              ///< every step-th frame is compared with a reference
-    int ssaa_samples = 256;    ///< of the reference
+    std::string name;         ///< "still", "moving", "first", "event"
+    int first = 0, last = 0;  ///< inclusive
+    int step = 1;             ///< every step-th frame is compared with a reference
+    int ssaa_samples = 256;   ///< of the reference
 };
 
 struct AtlasCase {
@@ -24,8 +24,8 @@ struct AtlasCase {
     std::string measure;  ///< the metric that exposes it: a column of the atlas
     Scene (*make)() = nullptr;
     std::vector<AtlasSegment> segments;  ///< in order of frames
-    std::optional<int> event_frame;      ///< recovery is counted from here
-    std::optional<int> resize_frame;     ///< earlier frames are rendered at half the size
+    std::optional<int> event_frame{};    ///< recovery is counted from here
+    std::optional<int> resize_frame{};   ///< earlier frames are rendered at half the size
     double orbit_deg = 0;                ///< per frame
     bool slow = false;                   ///< left out unless asked for by name
 };

@@ -1,5 +1,6 @@
 #include "demos/scenes/builtin.h"
 
+#include "demos/scenes/atlas.h"
 #include "demos/scenes/scenes.h"
 
 namespace still {
@@ -24,6 +25,20 @@ constexpr Entry kScenes[] = {
     {"pan", scenes::makePan},
 };
 
+const std::string kAtlasPrefix = "atlas-";
+
+/// A scene of the failure atlas. There are many, so only those who ask for one get their list.
+Result<Scene> atlasScene(const std::string& name) {
+    if (const AtlasCase* found = findAtlasCase(name.substr(kAtlasPrefix.size()))) {
+        return found->make();
+    }
+    std::string known;
+    for (const AtlasCase& each : atlasCases()) {
+        known += (known.empty() ? "" : ", ") + kAtlasPrefix + each.name;
+    }
+    return fail("builtin:" + name + ": unknown scene, expected one of " + known);
+}
+
 }  // namespace
 
 std::vector<std::string> builtinSceneNames() {
@@ -35,6 +50,9 @@ std::vector<std::string> builtinSceneNames() {
 }
 
 Result<Scene> builtinScene(const std::string& name) {
+    if (name.starts_with(kAtlasPrefix)) {
+        return atlasScene(name);
+    }
     std::string known;
     for (const Entry& entry : kScenes) {
         if (name == entry.name) {
@@ -42,7 +60,8 @@ Result<Scene> builtinScene(const std::string& name) {
         }
         known += (known.empty() ? "" : ", ") + std::string(entry.name);
     }
-    return fail("builtin:" + name + ": unknown scene, expected one of " + known);
+    return fail("builtin:" + name + ": unknown scene, expected one of " + known +
+                ", or atlas-NAME of the failure atlas");
 }
 
 }  // namespace still

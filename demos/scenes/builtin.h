@@ -13,7 +13,8 @@ namespace still {
 /// Names that builtinScene() takes, courtyard first.
 std::vector<std::string> builtinSceneNames();
 
-/// The error lists the names.
+/// Also takes "atlas-NAME" for every case of demos/scenes/atlas.h. The error lists the names, those
+/// of the atlas only where one of them was asked for.
 Result<Scene> builtinScene(const std::string& name);
 
 }  // namespace still
