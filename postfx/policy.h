@@ -35,7 +35,7 @@ enum class Method : uint8_t {
 enum class Blend : uint8_t {
     fixed,       ///< alpha_q15
     mean,        ///< 1/N, N up to count_cap
-    confidence,  ///< lerp(alpha_q15, 1, 1 − confidence)
+    confidence,  ///< lerp(alpha_q15, 1, 1 − confidence); confidence grows by a third each frame
     velocity,    ///< alpha_q15 at rest, grows by velocity_alpha_q15 for each pixel of motion
 };
 enum class MotionSource : uint8_t { surfaces, camera };
@@ -59,14 +59,19 @@ enum class SampleFilter : uint8_t {
 };
 enum class Rectification : uint8_t {
     off,
-    clamp,            ///< to the 3×3 minimum and maximum
-    clip,             ///< towards the box's centre, same box
-    variance_clip,    ///< towards the mean, box μ ± k σ
-    variance_clamp,   ///< to the same box
-    rounded_clip,     ///< mean of the 3×3 box and the plus-shaped box, towards its centre
+    clamp,           ///< to the 3×3 minimum and maximum
+    clip,            ///< towards the box's centre, same box
+    variance_clip,   ///< towards the mean, box μ ± k σ
+    variance_clamp,  ///< to the same box
+    rounded_clip,    ///< mean of the 3×3 box and the plus-shaped box, towards its centre
 };
 enum class ColourSpace : uint8_t { rgb, ycocg };
-enum class AntiFlicker : uint8_t { none, inverse_luminance, inverse_log, luma_difference };
+enum class AntiFlicker : uint8_t {
+    none,
+    inverse_luminance,  ///< sample and history are weighted by 1 / (1 + luminance)
+    inverse_log,        ///< by 1 / (1 + log2(1 + luminance))
+    luma_difference,    ///< alpha falls to its steady_share_q15 where luminances agree
+};
 enum class Tone : uint8_t { linear, reinhard };  ///< in which blending takes place
 
 struct TaaPolicy {
@@ -81,30 +86,34 @@ struct TaaPolicy {
 
     // Method::recursive
     Blend blend = Blend::fixed;
-    int alpha_q15 = 3277;           ///< share of the new sample
-    int count_cap = 64;             ///< Blend::mean
-    int velocity_alpha_q15 = 0;     ///< added per pixel of motion (Blend::velocity)
+    int alpha_q15 = 3277;         ///< share of the new sample
+    int count_cap = 64;           ///< Blend::mean
+    int velocity_alpha_q15 = 0;   ///< added per pixel of motion (Blend::velocity)
+    int steady_share_q15 = 8192;  ///< AntiFlicker::luma_difference
     MotionSource motion = MotionSource::surfaces;
     Dilation dilation = Dilation::nearest_depth;
     HistoryFilter history = HistoryFilter::bilinear;
-    bool dering = false;            ///< hold the history filter within its inner taps
+    bool dering = false;  ///< hold the history filter within its inner taps
     SampleFilter sample = SampleFilter::box;
     Rectification rectification = Rectification::variance_clip;
     ColourSpace space = ColourSpace::ycocg;
-    int sigma_fx8 = 256;            ///< k of μ ± kσ
-    // Tests of history; 0 = not made. One that fails rejects (or lowers confidence, if partial).
-    int depth_reject_q15 = 0;       ///< largest relative difference of depth
-    int normal_reject_q15 = 0;      ///< smallest cosine
+    int sigma_fx8 = 256;      ///< k of μ ± kσ
+    int sigma_still_fx8 = 0;  ///< k of a pixel at rest; 0 = sigma_fx8 at any speed …
+    int sigma_speed = 128;    ///< … else k falls to sigma_fx8 at this many pixels a frame
+    // Tests of history; 0 = not made. One that fails rejects, or, if partial, halves the weight of
+    // history.
+    int depth_reject_q15 = 0;   ///< largest relative difference of depth
+    int normal_reject_q15 = 0;  ///< smallest cosine
     bool id_reject = false;
-    int velocity_reject_fx8 = 0;    ///< largest difference of motion now and before, pixels
-    int luma_reject_q15 = 0;        ///< largest relative change of luminance
+    int velocity_reject_fx8 = 0;  ///< largest difference of motion now and before, pixels
+    int luma_reject_q15 = 0;      ///< largest relative change of luminance
     bool partial = false;
     AntiFlicker anti_flicker = AntiFlicker::none;
     Tone tone = Tone::linear;
 
     // Both
     int mip_bias_fx8 = 0;
-    int sharpness_q15 = 0;          ///< of the sharpening after the resolve
+    int sharpness_q15 = 0;  ///< of the sharpening after the resolve
 
     friend bool operator==(const TaaPolicy&, const TaaPolicy&) = default;
 };
@@ -120,5 +129,17 @@ std::span<const TaaPreset> taaPresets();
 
 /// Null when there is no such preset.
 const TaaPreset* findPreset(std::string_view name);
+
+/// A setting as people type it: the field's name without its unit, the value in natural units
+/// ("alpha", "0.1"; "sigma", "1.25"; "history", "catmull-rom5"; "dering", "on").
+struct TaaPolicyKey {
+    std::string_view name;
+    std::string_view values;  ///< allowed ones, for messages: "off|on", "0 … 1"
+};
+std::span<const TaaPolicyKey> taaPolicyKeys();
+
+/// False, and nothing is changed, when there is no such key or the value is not one of its values.
+/// Decimal fractions are rounded half up to the field's unit, in integers.
+bool setPolicyKey(TaaPolicy& policy, std::string_view key, std::string_view value);
 
 }  // namespace still
