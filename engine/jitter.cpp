@@ -1,34 +1,53 @@
 // Sources: I. M. Sobol, "On the distribution of points in a cube" (1967); A. Owen, "Randomly
 // permuted (t,m,s)-nets and (t,s)-sequences" (1995); G. Larcher, F. Pillichshammer, "Walsh series
-// analysis of the L2-discrepancy of symmetrisized point sets" (2001). All in integers.
+// analysis of the L2-discrepancy of symmetrisized point sets" (2001); J. Halton, "On the efficiency
+// of certain quasi-random sequences of points" (1960); M. Roberts, "The unreasonable effectiveness
+// of quasirandom sequences" (2018); D. Mitchell, "Spectrally optimal sampling for distribution ray
+// tracing" (1991). All in integers.
 //
-// The TAA sequence was chosen by measurement. "edge": rms error of the coverage of 20000 random
-// half-planes after n samples (α = 1/N); "all n": mean over n = 1 … 64 of rms · n^0.75. "motion": a
-// surface glides by v pixel per frame under the samples; unevenness (rms of the cyclic discrepancy
-// times √W, random samples: 0.29) of the phases in the last W frames, W = 8 … 64, along x and y,
-// the worst and the mean over 20 speeds among which are 1/2, 1/4, 1/8, 1/16, 3/8, 7/8, 1/3, 0.618.
+// Ours was chosen by measurement. "edge n": rms error of the mean of the first n samples at 20000
+// random edges through the pixel (angle and distance uniform); "all n": mean over n = 1 … 64 of
+// rms · n^0.75. "motion": a surface glides by v pixel per frame under the samples; unevenness of
+// the phases (offset − v · frame) of the last W frames, as Watson's U of them: random samples have
+// 0.29. Rms over windows that end with any frame of 64; the worst W of 8, 16, 32, 64; the worst and
+// the mean over both axes and v = 1/2 1/4 1/8 1/16 1/32 3/8 5/8 7/8 1/3 .05 .1 .15 .2 .3 .4 .43
+// .618 .7 .77 .9.
 //
-//   candidate                         edge 8     16     32     64     all n  motion worst mean
-//   Halton (2,3), points 1 … 64       0.0700     0.0484 0.0280 0.0174 0.385  1.156        0.280
-//   R2                                0.0961     0.0645 0.0383 0.0196 0.440  1.589        0.199
-//   Hammersley, order · 7             0.0900     0.0529 0.0313 0.0146 0.411  1.156        0.257
-//   Larcher-Pillichshammer, bit-rev.  0.1346     0.1082 0.0703 0.0118 0.661  1.156        0.264
-//   Sobol                             0.0816     0.0478 0.0242 0.0130 0.413  1.156        0.282
-//   Sobol, points Owen-scrambled      0.0590     0.0389 0.0212 0.0131 0.334  1.156        0.274
-//   chosen: points, order scrambled   0.0610     0.0373 0.0210 0.0127 0.310  0.350        0.246
-// (The last but one on the 3000 half-planes of the search, the others on 20000 fresh ones.)
+//   pattern                     edge 1  edge 4  edge 8  16      32      64      all n  worst mean
+//   none                        0.2496                                          3.271  1.155 0.252
+//   uniform2                    0.3403  0.1589                                  2.089  2.309 0.269
+//   rgss4                       0.3599  0.0910                                  1.211  2.309 0.293
+//   halton8, 16, 32             0.2731  0.1483  0.0716  0.0498  0.0292          0.489  1.168 0.289
+//   hammersley4                 0.4235  0.1041                                  1.393  1.528 0.278
+//   hammersley8                 0.4661  0.1264  0.0656                          0.892  2.309 0.307
+//   hammersley16                0.4895  0.1229  0.0811  0.0397                  0.571  1.242 0.256
+//   r2                          0.3052  0.1236  0.0970  0.0647  0.0383  0.0199  0.443  0.822 0.187
+//   blue_noise                  0.2496  0.1552  0.0623  0.0439  0.0280  0.0153  0.338  0.516 0.286
+//   net16                       0.2512  0.1093  0.0616  0.0372                  0.532  0.930 0.296
+//   net32                       0.2516  0.1112  0.0632  0.0367  0.0210          0.369  0.577 0.264
+//   net64, ours                 0.2524  0.1109  0.0631  0.0365  0.0206  0.0125  0.309  0.355 0.264
+//   Halton, 64 points           0.2731  0.1483  0.0716  0.0498  0.0292  0.0183  0.401  1.158 0.287
+//   Sobol                       0.5048  0.1368  0.0810  0.0468  0.0239  0.0128  0.410  1.156 0.288
+//   Sobol, points scrambled     0.2684  0.1169  0.0630  0.0373  0.0206  0.0125  0.321  1.156 0.288
+//   ours, first in a corner     0.2965  0.1086  0.0596  0.0365  0.0206  0.0125  0.307  0.521 0.267
 //
 // Scrambling the points alone cannot cure the resonance: of two successive Sobol points one is
 // always in the left half and one in the right half, in the same order, so at v = 1/2 all samples
 // fall into the same half of the surface's pixel. Scrambling the order inside the aligned runs of
-// 2, 4, 8 … keeps every run a net and breaks the beat. The scrambles are the best of 4500 random
-// ones improved by flipping single bits while that helped.
+// 2, 4, 8 … keeps every run a net and breaks the beat. The scrambles of the points are the best of
+// 4500 random ones improved by flipping single bits while that helped. So is the one of the order,
+// among those that begin with the point nearest the pixel's centre: the frame after a cut is then
+// as good as an unjittered one.
 
 #include "engine/jitter.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
+#include <span>
+
+#include "rasterizer/fixed.h"
 
 namespace still {
 namespace {
@@ -37,15 +56,16 @@ constexpr int kTaaBits = 6;
 static_assert(kTaaPeriod == 1u << kTaaBits);
 
 /// One bit for every node of the binary tree of 6-bit numbers; node 1 is the root.
-constexpr uint64_t kOrderScramble = 0x7706afaea8742d54;
+constexpr uint64_t kOrderScramble = 0x1626578b09e9ec44;
 constexpr uint64_t kScrambleX = 0xe51d18efe9d965a2;
 constexpr uint64_t kScrambleY = 0xb43d4795fae85bc3;
 
-/// Owen's nested permutation: each bit is flipped or not depending on the bits above it.
-constexpr uint32_t scrambled(uint32_t v, uint64_t flips) {
+/// Owen's nested permutation of the numbers of `bits` bits: each bit is flipped or not depending
+/// on the bits above it.
+constexpr uint32_t scrambled(uint32_t v, uint64_t flips, int bits) {
     uint32_t result = 0;
     uint32_t node = 1;
-    for (int i = kTaaBits - 1; i >= 0; --i) {
+    for (int i = bits - 1; i >= 0; --i) {
         const uint32_t bit = (v >> i) & 1;
         result |= (bit ^ (uint32_t(flips >> node) & 1)) << i;
         node = node * 2 + bit;
@@ -88,22 +108,162 @@ constexpr int cellOffset(uint32_t k, int bits) {
     return int(position_fx8) - 128;
 }
 
-constexpr std::array<SampleOffset, kTaaPeriod> makeTaaSequence() {
-    std::array<SampleOffset, kTaaPeriod> sequence{};
-    for (uint32_t i = 0; i < kTaaPeriod; ++i) {
-        const uint32_t point = scrambled(i, kOrderScramble);
-        const uint32_t x = scrambled(mirrored(point, kTaaBits), kScrambleX);
-        const uint32_t y = scrambled(sobolSecond(point, kTaaBits), kScrambleY);
-        sequence[i] = {cellOffset(x, kTaaBits), cellOffset(y, kTaaBits)};
+/// The first 2^bits samples of the TAA sequence, each in the centre of its cell of 1/2^bits pixel:
+/// every run of the sequence is a net, so no two share a column or a row.
+template <int kBits>
+constexpr std::array<SampleOffset, 1 << kBits> makeNet() {
+    std::array<SampleOffset, 1 << kBits> net{};
+    for (uint32_t i = 0; i < net.size(); ++i) {
+        const uint32_t point = scrambled(i, kOrderScramble, kTaaBits);
+        const uint32_t x = scrambled(mirrored(point, kTaaBits), kScrambleX, kTaaBits);
+        const uint32_t y = scrambled(sobolSecond(point, kTaaBits), kScrambleY, kTaaBits);
+        net[i] = {cellOffset(x >> (kTaaBits - kBits), kBits),
+                  cellOffset(y >> (kTaaBits - kBits), kBits)};
     }
-    return sequence;
+    return net;
 }
-constexpr std::array<SampleOffset, kTaaPeriod> kTaaSequence = makeTaaSequence();
+
+/// Digits of i in `base`, mirrored behind the point, to the nearest 1/256, half up, from −1/2.
+constexpr int radicalInverseOffset(uint32_t i, uint32_t base) {
+    uint32_t numerator = 0, denominator = 1;
+    for (; i != 0; i /= base) {
+        numerator = numerator * base + i % base;
+        denominator *= base;
+    }
+    return int((512 * numerator + denominator) / (2 * denominator)) - 128;
+}
+
+constexpr std::array<SampleOffset, 32> makeHalton() {
+    std::array<SampleOffset, 32> points{};
+    for (uint32_t i = 0; i < points.size(); ++i) {
+        points[i] = {radicalInverseOffset(i + 1, 2), radicalInverseOffset(i + 1, 3)};
+    }
+    return points;
+}
+
+/// Point k is (k, mirrored k) of 2^bits cells. Taken in its own order it would sweep the pixel
+/// from left to right, so sample i is point i · step.
+template <int kBits>
+constexpr std::array<SampleOffset, 1 << kBits> makeHammersley(uint32_t step) {
+    std::array<SampleOffset, 1 << kBits> points{};
+    for (uint32_t i = 0; i < points.size(); ++i) {
+        const uint32_t point = i * step % uint32_t(points.size());
+        points[i] = {cellOffset(point, kBits), cellOffset(mirrored(point, kBits), kBits)};
+    }
+    return points;
+}
+
+/// Sample i is frac((i + 1) · (1/ρ, 1/ρ²)) of the plastic number ρ (ρ³ = ρ + 1), in 1/2^32,
+/// rounded half up; what rounds to the pixel's far edge stays inside.
+constexpr std::array<SampleOffset, 64> makeR2() {
+    constexpr uint32_t kStepX = 0xC13FA9A9, kStepY = 0x91E10DA6;
+    constexpr auto offset = [](uint32_t position) {
+        const int rounded = int((uint64_t{position} + (1u << 23)) >> 24);
+        return (rounded < 256 ? rounded : 255) - 128;
+    };
+    std::array<SampleOffset, 64> points{};
+    for (uint32_t i = 0; i < points.size(); ++i) {
+        points[i] = {offset((i + 1) * kStepX), offset((i + 1) * kStepY)};
+    }
+    return points;
+}
+
+constexpr auto kNet64 = makeNet<6>();
+constexpr auto kNet32 = makeNet<5>();
+constexpr auto kNet16 = makeNet<4>();
+constexpr auto kHalton = makeHalton();
+constexpr auto kHammersley16 = makeHammersley<4>(7);
+constexpr auto kHammersley8 = makeHammersley<3>(3);
+constexpr auto kHammersley4 = makeHammersley<2>(3);
+constexpr auto kR2 = makeR2();
+constexpr std::array<SampleOffset, 1> kCentre{};
+constexpr std::array<SampleOffset, 2> kUniform2{{{-64, -64}, {64, 64}}};
+/// The rotated grid, opposite corners one after the other.
+constexpr std::array<SampleOffset, 4> kRgss4{{{-32, -96}, {32, 96}, {96, -32}, {-96, 32}}};
+
+/// D. Mitchell's best candidates on a torus of 256 × 256: point 0 is the centre; point k is the
+/// first of those of 8 · k candidates that are farthest from all points before it. Candidates are
+/// pairs x, y of the top bytes of s ← 1664525 · s + 1013904223 (mod 2^32), from s = 28, which was
+/// the best start of 300 by the error at edges. A test makes the table again.
+constexpr std::array<SampleOffset, 64> kBlueNoise{{
+    {0, 0},     {125, 52},   {67, -105},  {-68, -96}, {-49, 68},  {-123, -40},  {71, -4},
+    {16, 102},  {-114, 116}, {5, -86},    {-59, -2},  {78, 90},   {-32, -47},   {-31, 121},
+    {60, -48},  {30, 44},    {-111, -84}, {-96, 25},  {97, -71},  {114, 7},     {-81, -51},
+    {8, -45},   {80, 45},    {106, -121}, {-93, 70},  {-34, 32},  {-11, 64},    {94, -35},
+    {-67, 101}, {34, -19},   {-89, -18},  {112, 89},  {47, 122},  {-27, -98},   {-84, -125},
+    {46, 72},   {4, -122},   {38, -81},   {-73, 43},  {40, 12},   {-28, -15},   {-22, 93},
+    {78, 122},  {-41, -75},  {-4, 34},    {68, -73},  {-113, 0},  {-57, -34},   {112, -94},
+    {16, 66},   {-118, 78},  {123, -68},  {-93, 100}, {98, 65},   {-119, -114}, {89, 17},
+    {27, -107}, {57, 32},    {-53, -121}, {119, -18}, {-15, -71}, {-60, 23},    {34, -52},
+    {-124, 26},
+}};
+
+std::span<const SampleOffset> samplesOf(JitterPattern pattern) {
+    switch (pattern) {
+        case JitterPattern::none:
+            return kCentre;
+        case JitterPattern::uniform2:
+            return kUniform2;
+        case JitterPattern::rgss4:
+            return kRgss4;
+        case JitterPattern::halton8:
+            return std::span(kHalton).first<8>();
+        case JitterPattern::halton16:
+            return std::span(kHalton).first<16>();
+        case JitterPattern::halton32:
+            return kHalton;
+        case JitterPattern::hammersley4:
+            return kHammersley4;
+        case JitterPattern::hammersley8:
+            return kHammersley8;
+        case JitterPattern::hammersley16:
+            return kHammersley16;
+        case JitterPattern::net16:
+            return kNet16;
+        case JitterPattern::net32:
+            return kNet32;
+        case JitterPattern::net64:
+            return kNet64;
+        case JitterPattern::r2:
+            return kR2;
+        case JitterPattern::blue_noise:
+            return kBlueNoise;
+    }
+    return kCentre;
+}
+
+/// Bits of a cycle's order scramble (the finisher of SplitMix64); cycle 0 keeps the given order.
+constexpr uint64_t flipsOfCycle(uint32_t cycle) {
+    uint64_t z = uint64_t{cycle} * 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+int scaledOffset(int offset_fx8, int scale_fx8) {
+    return std::clamp(roundShift(offset_fx8 * scale_fx8, 8), -128, 127);
+}
 
 }  // namespace
 
+uint32_t jitterPeriod(JitterPattern pattern) {
+    return uint32_t(samplesOf(pattern).size());
+}
+
+SampleOffset jitterSample(JitterPattern pattern, int scale_fx8, bool scramble, uint32_t index) {
+    assert(scale_fx8 >= 0 && scale_fx8 <= kMaxJitterScale_fx8);
+    const std::span<const SampleOffset> samples = samplesOf(pattern);
+    const uint32_t period = uint32_t(samples.size());
+    uint32_t place = index % period;
+    if (scramble) {
+        place = scrambled(place, flipsOfCycle(index / period), std::countr_zero(period));
+    }
+    return {scaledOffset(samples[place].x_fx8, scale_fx8),
+            scaledOffset(samples[place].y_fx8, scale_fx8)};
+}
+
 SampleOffset taaSample(uint32_t index) {
-    return kTaaSequence[index % kTaaPeriod];
+    return kNet64[index % kTaaPeriod];
 }
 
 SampleOffset ssaaSample(uint32_t index, uint32_t count) {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "postfx/policy.h"
+
 namespace still {
 
 /// Offset of the sample from the pixel's centre, x right, y down, in 1/256 pixel, −128 … 127.
@@ -14,8 +16,23 @@ struct SampleOffset {
 constexpr uint32_t kTaaPeriod = 64;
 
 /// Sample `index` (taken modulo kTaaPeriod) of the TAA sequence; any 2^k aligned run of samples is
-/// itself a (0,2)-net, and the offsets of a period have zero mean.
+/// itself a (0,2)-net, the offsets of a period have zero mean, and sample 0 is the one nearest the
+/// pixel's centre. The same as jitterSample(JitterPattern::net64, 256, false, index).
 SampleOffset taaSample(uint32_t index);
+
+/// Samples after which a pattern begins again: the number in its name, 1 for none, 64 for r2 and
+/// blue_noise. Always a power of two.
+uint32_t jitterPeriod(JitterPattern pattern);
+
+constexpr int kMaxJitterScale_fx8 = 1024;
+
+/// Sample `index` of a pattern.
+/// `scale_fx8`, 0 … kMaxJitterScale_fx8, multiplies offsets (256 = as they are), rounded half up;
+/// what would leave the pixel stays at its edge. `scramble` takes the samples of each period after
+/// the first in another order (of those in which aligned runs of 2, 4, 8 … stay together).
+/// Zero mean over a period: none, uniform2, rgss4, hammersley, net. Halton begins at index 1, its
+/// values are exact and rounded half up. Formulas: jitter.cpp.
+SampleOffset jitterSample(JitterPattern pattern, int scale_fx8, bool scramble, uint32_t index);
 
 /// Sample `index` of a set of `count` samples for ssaa references; 1 ≤ count ≤ 65536. A single
 /// sample is the pixel's centre. Powers of two are (0,2)-nets: up to 128 samples they have zero

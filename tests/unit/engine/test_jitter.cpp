@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -72,6 +73,67 @@ size_t distinct(const std::vector<SampleOffset>& samples) {
     return places.size();
 }
 
+const std::vector<JitterPattern> kPatterns{
+    JitterPattern::none,        JitterPattern::uniform2,    JitterPattern::rgss4,
+    JitterPattern::halton8,     JitterPattern::halton16,    JitterPattern::halton32,
+    JitterPattern::hammersley4, JitterPattern::hammersley8, JitterPattern::hammersley16,
+    JitterPattern::net16,       JitterPattern::net32,       JitterPattern::net64,
+    JitterPattern::r2,          JitterPattern::blue_noise};
+
+std::vector<SampleOffset> patternRun(JitterPattern pattern, uint32_t first, uint32_t count,
+                                     bool scramble = false) {
+    std::vector<SampleOffset> run;
+    for (uint32_t i = first; i < first + count; ++i) {
+        run.push_back(jitterSample(pattern, 256, scramble, i));
+    }
+    return run;
+}
+
+std::vector<std::pair<int, int>> pairsOf(const std::vector<SampleOffset>& samples) {
+    std::vector<std::pair<int, int>> pairs;
+    for (const SampleOffset& s : samples) {
+        pairs.emplace_back(s.x_fx8, s.y_fx8);
+    }
+    return pairs;
+}
+
+std::vector<std::pair<int, int>> sortedPairs(const std::vector<SampleOffset>& samples) {
+    auto pairs = pairsOf(samples);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+/// Mitchell's best candidates as jitter.cpp describes them.
+std::vector<SampleOffset> bestCandidates(uint32_t state, int per_point, size_t count) {
+    std::vector<SampleOffset> points{{0, 0}};
+    const auto next = [&state] {
+        state = state * 1664525u + 1013904223u;
+        return int(state >> 24) - 128;
+    };
+    const auto across = [](int a, int b) {
+        return std::min(std::abs(a - b), 256 - std::abs(a - b));
+    };
+    while (points.size() < count) {
+        SampleOffset best;
+        int farthest = -1;
+        for (int c = per_point * int(points.size()); c > 0; --c) {
+            const int x = next();
+            const int y = next();
+            int nearest = 1 << 30;
+            for (const SampleOffset& p : points) {
+                const int dx = across(x, p.x_fx8), dy = across(y, p.y_fx8);
+                nearest = std::min(nearest, dx * dx + dy * dy);
+            }
+            if (nearest > farthest) {
+                farthest = nearest;
+                best = {x, y};
+            }
+        }
+        points.push_back(best);
+    }
+    return points;
+}
+
 /// Share of the pixel on one side of a line, by counting a fine grid.
 double coverage(double nx, double ny, double d) {
     int inside = 0;
@@ -138,6 +200,117 @@ TEST_CASE("jitter: half a pixel per frame does not put all samples into one half
         CHECK((upper[0] >= 2 && upper[0] <= 14));
         CHECK((upper[1] >= 2 && upper[1] <= 14));
     }
+}
+
+TEST_CASE("jitter: the first TAA sample is the one nearest the pixel's centre", "[unit][jitter]") {
+    const auto distance = [](const SampleOffset& s) {
+        return s.x_fx8 * s.x_fx8 + s.y_fx8 * s.y_fx8;
+    };
+    for (const SampleOffset& s : taaRun(1, kTaaPeriod - 1)) {
+        CHECK(distance(taaSample(0)) < distance(s));
+    }
+}
+
+TEST_CASE("jitter: every pattern repeats after its period and stays in the pixel",
+          "[unit][jitter]") {
+    const uint32_t periods[] = {1, 2, 4, 8, 16, 32, 4, 8, 16, 16, 32, 64, 64, 64};
+    for (size_t k = 0; k < kPatterns.size(); ++k) {
+        const JitterPattern pattern = kPatterns[k];
+        const uint32_t period = jitterPeriod(pattern);
+        CAPTURE(k);
+        CHECK(period == periods[k]);
+        CHECK(std::has_single_bit(period));
+        const auto run = patternRun(pattern, 0, period);
+        CHECK(inRange(run));
+        CHECK(distinct(run) == period);
+        CHECK(pairsOf(patternRun(pattern, 5 * period, period)) == pairsOf(run));
+    }
+}
+
+TEST_CASE("jitter: symmetric patterns have zero mean", "[unit][jitter]") {
+    for (const JitterPattern pattern :
+         {JitterPattern::none, JitterPattern::uniform2, JitterPattern::rgss4,
+          JitterPattern::hammersley4, JitterPattern::hammersley8, JitterPattern::hammersley16,
+          JitterPattern::net16, JitterPattern::net32, JitterPattern::net64}) {
+        CAPTURE(int(pattern));
+        CHECK(sumOf(patternRun(pattern, 0, jitterPeriod(pattern))) == std::pair(0, 0));
+    }
+}
+
+TEST_CASE("jitter: every aligned run of a net is a net, also when scrambled", "[unit][jitter]") {
+    for (const JitterPattern pattern :
+         {JitterPattern::net16, JitterPattern::net32, JitterPattern::net64}) {
+        const uint32_t period = jitterPeriod(pattern);
+        for (const bool scramble : {false, true}) {
+            for (uint32_t length = 1; length <= period; length *= 2) {
+                for (uint32_t first = 0; first < 3 * period; first += length) {
+                    CHECK(isNet(patternRun(pattern, first, length, scramble)));
+                }
+            }
+        }
+    }
+    for (const JitterPattern pattern :
+         {JitterPattern::hammersley4, JitterPattern::hammersley8, JitterPattern::hammersley16}) {
+        CHECK(isNet(patternRun(pattern, 0, jitterPeriod(pattern))));
+    }
+}
+
+TEST_CASE("jitter: Halton has the exact values from index 1, rounded half up", "[unit][jitter]") {
+    // 1/2 1/4 3/4 1/8 5/8 3/8 7/8 1/16 and 1/3 2/3 1/9 4/9 7/9 2/9 5/9 8/9 of 256, minus 128.
+    const std::vector<std::pair<int, int>> expected{{0, -43}, {-64, 43},  {64, -100}, {-96, -14},
+                                                    {32, 71}, {-32, -71}, {96, 14},   {-112, 100}};
+    CHECK(pairsOf(patternRun(JitterPattern::halton8, 0, 8)) == expected);
+    // Index 27 is 11011 in base 2 and 1000 in base 3: 27/32 and 1/81.
+    CHECK(pairsOf(patternRun(JitterPattern::halton32, 26, 1)).at(0) == std::pair(88, -125));
+    CHECK(pairsOf(patternRun(JitterPattern::halton32, 0, 16)) ==
+          pairsOf(patternRun(JitterPattern::halton16, 0, 16)));
+}
+
+TEST_CASE("jitter: R2 follows the plastic number", "[unit][jitter]") {
+    const double rho = 1.324717957244746;
+    const auto run = patternRun(JitterPattern::r2, 0, 64);
+    for (int i = 0; i < 64; ++i) {
+        const double x = std::fmod((i + 1) / rho, 1.0), y = std::fmod((i + 1) / (rho * rho), 1.0);
+        CHECK(std::abs(run[size_t(i)].x_fx8 + 128 - x * 256) < 0.51);
+        CHECK(std::abs(run[size_t(i)].y_fx8 + 128 - y * 256) < 0.51);
+    }
+}
+
+TEST_CASE("jitter: the blue noise table is what its recipe makes", "[unit][jitter]") {
+    CHECK(pairsOf(patternRun(JitterPattern::blue_noise, 0, 64)) ==
+          pairsOf(bestCandidates(28, 8, 64)));
+}
+
+TEST_CASE("jitter: scrambling permutes each cycle and leaves the first as it is",
+          "[unit][jitter]") {
+    for (const JitterPattern pattern : kPatterns) {
+        const uint32_t period = jitterPeriod(pattern);
+        const auto plain = patternRun(pattern, 0, period);
+        CAPTURE(int(pattern));
+        CHECK(pairsOf(patternRun(pattern, 0, period, true)) == pairsOf(plain));
+        int other_orders = 0;
+        for (uint32_t cycle = 1; cycle < 20; ++cycle) {
+            const auto scrambled = patternRun(pattern, cycle * period, period, true);
+            CHECK(sortedPairs(scrambled) == sortedPairs(plain));
+            other_orders += pairsOf(scrambled) == pairsOf(plain) ? 0 : 1;
+        }
+        CHECK((period == 1 || other_orders > 4));
+    }
+}
+
+TEST_CASE("jitter: the scale multiplies offsets, half up, and stops at the pixel's edge",
+          "[unit][jitter]") {
+    const auto at = [](int scale_fx8, uint32_t i) {
+        const SampleOffset s = jitterSample(JitterPattern::rgss4, scale_fx8, false, i);
+        return std::pair(s.x_fx8, s.y_fx8);
+    };
+    CHECK(at(256, 0) == std::pair(-32, -96));
+    CHECK(at(128, 0) == std::pair(-16, -48));
+    CHECK(at(0, 0) == std::pair(0, 0));
+    CHECK(at(4, 0) == std::pair(0, -1));  // −1/2 is rounded up, −3/2 too
+    CHECK(at(4, 1) == std::pair(1, 2));
+    CHECK(at(1024, 0) == std::pair(-128, -128));
+    CHECK(at(1024, 1) == std::pair(127, 127));
 }
 
 TEST_CASE("jitter: ssaa sets of powers of two are nets", "[unit][jitter]") {
