@@ -1,0 +1,246 @@
+#pragma once
+// One pixel of the spatial filter near an edge. Sources: A. Reshetov, "Morphological antialiasing"
+// (2009): the shapes of edges and the straight lines through them; J. Jimenez et al., "SMAA:
+// Enhanced subpixel morphological antialiasing" (2012): blending with the neighbour across the
+// edge. Here the edges are known and not guessed from colours, and samples may lie off the centres.
+//
+//   a Z:  ____|▔▔▔▔      an L: ____|▔▔▔▔        a U: ▔▔|______|▔▔
+//   the line runs from   half way up the jog       half way up to the
+//   jog to jog           to the middle of the run  middle and up again
+
+#include <array>
+
+#include "postfx/internal/spatial_rules.h"
+#include "postfx/spatial.h"
+
+namespace still::spatial {
+
+/// Edges read off the plane that the first pass made.
+struct PlaneEdges {
+    ImageView<const uint8_t> plane;
+
+    bool right(int x, int y) const { return (plane.row(y)[x] & kEdgeRight) != 0; }
+    bool below(int x, int y) const { return (plane.row(y)[x] & kEdgeBelow) != 0; }
+};
+
+/// Edges found when asked for.
+struct LiveEdges {
+    const SpatialInput& input;
+
+    bool between(int x, int y, int other_x, int other_y) const {
+        if (((input.id.row(y)[x] ^ input.id.row(other_y)[other_x]) & kSurfaceMask) != 0) {
+            return true;
+        }
+        return !input.normal.empty() &&
+               isCrease(input.normal.row(y)[x], input.normal.row(other_y)[other_x]);
+    }
+    bool right(int x, int y) const { return between(x, y, x + 1, y); }
+    bool below(int x, int y) const { return between(x, y, x, y + 1); }
+};
+
+/// The picture with its edges; outside the border pixels repeat.
+template <class Edges>
+class Picture {
+  public:
+    Picture(const SpatialInput& input, Edges edges)
+        : input_(input),
+          edges_(edges),
+          width_(input.colour.red.width),
+          height_(input.colour.red.height) {}
+
+    const SpatialInput& input() const { return input_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int column(int x) const { return std::clamp(x, 0, width_ - 1); }
+    int row(int y) const { return std::clamp(y, 0, height_ - 1); }
+    bool right(int x, int y) const { return x >= 0 && x + 1 < width_ && edges_.right(x, row(y)); }
+    bool below(int x, int y) const {
+        return y >= 0 && y + 1 < height_ && edges_.below(column(x), y);
+    }
+
+  private:
+    const SpatialInput& input_;
+    Edges edges_;
+    int width_, height_;
+};
+
+/// The same picture seen along rows or, with x and y swapped, along columns.
+template <class Edges, bool kSwapped>
+struct Along {
+    const Picture<Edges>& picture;
+
+    int length() const { return kSwapped ? picture.height() : picture.width(); }
+    /// Edge between (u, v) and (u, v + 1): the one that is followed.
+    bool edge(int u, int v) const { return kSwapped ? picture.right(v, u) : picture.below(u, v); }
+    /// Edge between (u, v) and (u + 1, v): a jog that ends it.
+    bool jog(int u, int v) const { return kSwapped ? picture.below(v, u) : picture.right(u, v); }
+};
+
+/// Half of the edge around a pixel: how many more pixels it goes on, and how it ends.
+struct End {
+    int distance = 0;
+    int height_fx8 = 0;  ///< of the line there, towards the side v: half a pixel, none, or minus
+};
+
+/// Follows the edge between rows v and v + 1 from u in direction `step` (±1).
+template <class View>
+End findEnd(const View& view, int u, int v, int step) {
+    End end;
+    for (; end.distance < kSearch; ++end.distance) {
+        const int at = u + step * end.distance;
+        const int border = step > 0 ? at : at - 1;
+        if (border < 0 || border + 1 >= view.length()) {
+            return end;
+        }
+        const bool near_jog = view.jog(border, v), far_jog = view.jog(border, v + 1);
+        if (near_jog || far_jog || !view.edge(at + step, v)) {
+            end.height_fx8 = 128 * (int(near_jog) - int(far_jog));
+            return end;
+        }
+    }
+    return end;
+}
+
+/// Height of the line through an edge of `length` pixels at `t_fx8` from its left end.
+inline int lineHeight(int left, int right, int length, int t_fx8) {
+    const int whole_fx8 = length * 256;
+    if (left * right < 0) {
+        return left + floorDiv((right - left) * t_fx8, whole_fx8);
+    }
+    const int from_left = std::max(whole_fx8 - 2 * t_fx8, 0);
+    const int from_right = std::max(2 * t_fx8 - whole_fx8, 0);
+    return floorDiv(left * from_left + right * from_right, whole_fx8);
+}
+
+/// What the two pixels of an edge take of each other, in 1/1024, and the edge's length in pixels;
+/// length 0: there is no edge.
+struct Exchange {
+    int near_q10 = 0, far_q10 = 0, length = 0;
+};
+
+/// The edge between (u, v) and (u, v + 1), samples lying `along_fx8`, `across_fx8` off the centres.
+template <class View>
+Exchange exchangeAt(const View& view, int u, int v, int along_fx8, int across_fx8) {
+    if (!view.edge(u, v)) {
+        return {};
+    }
+    const End left = findEnd(view, u, v, -1), right = findEnd(view, u, v, +1);
+    Exchange exchange;
+    exchange.length = left.distance + right.distance + 1;
+    constexpr int kSteps = 4;  // midpoints: exact for straight pieces
+    for (int i = 0; i < kSteps; ++i) {
+        const int t_fx8 = left.distance * 256 - along_fx8 + 32 + 64 * i;
+        const int height = lineHeight(left.height_fx8, right.height_fx8, exchange.length,
+                                      std::clamp(t_fx8, 0, exchange.length * 256));
+        const int covered = height - across_fx8;
+        exchange.near_q10 += std::max(covered, 0);
+        exchange.far_q10 += std::max(-covered, 0);
+    }
+    return exchange;
+}
+
+/// Shares in 1/1024 of the neighbours below, above, right and left.
+struct Shares {
+    std::array<int, 4> q10{};
+    int total_q10 = 0;
+    int length = 0;  ///< of the longest edge
+};
+
+template <class Edges>
+Shares edgeShares(const Picture<Edges>& picture, int x, int y) {
+    const int jx = picture.input().jitter_x_fx8, jy = picture.input().jitter_y_fx8;
+    const Along<Edges, false> rows{picture};
+    const Along<Edges, true> columns{picture};
+    const Exchange below = exchangeAt(rows, x, y, jx, jy);
+    const Exchange above = exchangeAt(rows, x, y - 1, jx, jy);
+    const Exchange right = exchangeAt(columns, y, x, jy, jx);
+    const Exchange left = exchangeAt(columns, y, x - 1, jy, jx);
+    Shares shares;
+    shares.q10 = {below.near_q10, above.far_q10, right.near_q10, left.far_q10};
+    shares.length = std::max({below.length, above.length, right.length, left.length});
+    for (int share : shares.q10) {
+        shares.total_q10 += share;
+    }
+    if (shares.total_q10 > 1024) {
+        for (int& share : shares.q10) {
+            share = share * 1024 / shares.total_q10;
+        }
+        shares.total_q10 = shares.q10[0] + shares.q10[1] + shares.q10[2] + shares.q10[3];
+    }
+    return shares;
+}
+
+/// The edges inside a 3×3 window.
+struct Window {
+    std::array<bool, 9> same{};  ///< reached from the centre without crossing an edge
+    int edges = 0;               ///< of 12
+};
+
+template <class Edges>
+Window windowAt(const Picture<Edges>& picture, int x, int y) {
+    bool right[3][2], below[2][3];
+    Window window;
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 2; ++i) {
+            right[j][i] = picture.right(x - 1 + i, y - 1 + j);
+            below[i][j] = picture.below(x - 1 + j, y - 1 + i);
+            window.edges += int(right[j][i]) + int(below[i][j]);
+        }
+    }
+    const auto corner = [&](int i, int j) {  // i, j: 0 or 1 = left or right, above or below
+        return (!right[1][i] && !below[j][2 * i]) || (!below[j][1] && !right[2 * j][i]);
+    };
+    window.same = {corner(0, 0), !below[0][1], corner(1, 0), !right[1][0], true,
+                   !right[1][1], corner(0, 1), !below[1][1], corner(1, 1)};
+    return window;
+}
+
+/// Mean of the 3×3 window regardless of surfaces, leaning towards the pixel's centre: for details
+/// that are too small for a line through their edges to mean anything. The weights are those that
+/// least squares find for chain link.
+inline int windowMean(const int (&window)[9], int jitter_x_fx8, int jitter_y_fx8) {
+    constexpr int kCorner_q10 = 51, kSide_q10 = 82;
+    const auto lean = [](int d_fx8) { return roundShift(77 * d_fx8, 6); };  // 0.3 d
+    const int lean_x = lean(-jitter_x_fx8), lean_y = lean(-jitter_y_fx8);
+    const int corners = window[0] + window[2] + window[6] + window[8];
+    const int sides = window[1] + window[3] + window[5] + window[7];
+    const int centre = window[4];
+    const int sum = kCorner_q10 * (corners - 4 * centre) + kSide_q10 * (sides - 4 * centre) +
+                    lean_x * (window[5] - window[3]) + lean_y * (window[7] - window[1]);
+    return std::clamp(centre + roundShift(sum, 10), 0, 65535);
+}
+
+/// How far the window mean replaces the lines, in 1/16: where edges are crowded (more than 4 of
+/// 12) or shorter than 5 pixels.
+inline int crowding(const Window& window, const Shares& shares) {
+    return std::clamp(std::max((window.edges - 4) * 4, (5 - shares.length) * 5), 0, 16);
+}
+
+/// The filtered pixel.
+template <class Edges>
+void filteredPixel(const Picture<Edges>& picture, int x, int y, int rgb[3]) {
+    const SpatialInput& input = picture.input();
+    const Window window = windowAt(picture, x, y);
+    const Taps across = pixelTaps(input.jitter_x_fx8), down = pixelTaps(input.jitter_y_fx8);
+    const Shares shares = window.edges > 0 ? edgeShares(picture, x, y) : Shares{};
+    const int crowded = window.edges > 0 ? crowding(window, shares) : 0;
+    const ImageView<const uint16_t> planes[3] = {input.colour.red, input.colour.green,
+                                                 input.colour.blue};
+    for (int c = 0; c < 3; ++c) {
+        int all[9], own[9];
+        for (int i = 0; i < 9; ++i) {
+            all[i] = planes[c].row(picture.row(y - 1 + i / 3))[picture.column(x - 1 + i % 3)];
+        }
+        for (int i = 0; i < 9; ++i) {
+            own[i] = window.same[size_t(i)] ? all[i] : all[4];
+        }
+        const int inside = pixelMean(own, across, down);
+        const int sum = inside * (1024 - shares.total_q10) + all[7] * shares.q10[0] +
+                        all[1] * shares.q10[1] + all[5] * shares.q10[2] + all[3] * shares.q10[3];
+        const int lined = roundShift(sum, 10);
+        const int mean = windowMean(all, input.jitter_x_fx8, input.jitter_y_fx8);
+        rgb[c] = lined + roundShift((mean - lined) * crowded, 4);
+    }
+}
+
+}  // namespace still::spatial
