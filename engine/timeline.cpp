@@ -152,7 +152,8 @@ bool allTexturesRepeat(const Scene& scene, const Material& material) {
     };
     return repeats(scene.textures, material.colour_texture) &&
            repeats(scene.textures, material.normal_texture) &&
-           repeats(scene.alpha_textures, material.alpha_texture);
+           repeats(scene.alpha_textures, material.alpha_texture) &&
+           repeats(scene.alpha_textures, material.height_texture);
 }
 
 /// The material that `tracks` are of, as it is in `frame`.

@@ -18,8 +18,8 @@ struct VertexAttributes {
     float u, v;
 };
 
-/// Only in meshes with a normal-mapped part: unit tangent along +u and handedness (+1 or −1);
-/// bitangent = handedness · cross(normal, tangent).
+/// Only in meshes with a normal-mapped or height-mapped part: unit tangent along +u and handedness
+/// (+1 or −1); bitangent = handedness · cross(normal, tangent).
 struct VertexTangent {
     float x, y, z, handedness;
 };
@@ -64,8 +64,8 @@ struct Texture {
     std::vector<uint32_t> texels;
 };
 
-/// One byte per texel, 255 = opaque. `texels` carries 4 spare bytes at its end, so that a kernel
-/// may load 32 bits at any texel.
+/// One byte per texel, 255 = opaque (or, in height maps, highest). `texels` carries 4 spare bytes
+/// at its end, so that a kernel may load 32 bits at any texel.
 struct AlphaTexture {
     Wrap wrap = Wrap::repeat;
     std::vector<TextureLevel> levels;
@@ -91,6 +91,11 @@ struct Material {
     int32_t colour_texture = kNoTexture;  ///< into DrawList::textures
     int32_t normal_texture = kNoTexture;  ///< into DrawList::textures; needs tangents
     int32_t alpha_texture = kNoTexture;   ///< into DrawList::alpha_textures
+    /// Into DrawList::alpha_textures, 255 = the surface itself, 0 = `height_scale` below it; needs
+    /// tangents. The other textures are looked up where the view ray meets that ground (parallax);
+    /// depth, silhouette and motion stay those of the flat surface.
+    int32_t height_texture = kNoTexture;
+    float height_scale = 0.0f;  ///< in texture coordinates: 1 = as deep as one repeat is wide
     /// Added to the interpolated texture coordinates: 1 = one repeat of the texture, v upwards.
     /// Keep it within ±1 where textures repeat, so that no precision is lost.
     float u_offset = 0.0f, v_offset = 0.0f;

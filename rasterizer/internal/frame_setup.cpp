@@ -31,6 +31,10 @@ Surface makeSurface(const DrawList& list, const Instance& instance, uint32_t ins
         s.normal = &list.textures[size_t(material.normal_texture)];
         s.features |= kShadeNormalMap;
     }
+    if (material.height_texture != kNoTexture && s.tangents != nullptr) {
+        s.height = &list.alpha_textures[size_t(material.height_texture)];
+        s.features |= kShadeHeightMap;
+    }
     if (material.alpha_texture != kNoTexture) {
         s.alpha = &list.alpha_textures[size_t(material.alpha_texture)];
     }

@@ -91,17 +91,22 @@ enum ShadeFeature : uint8_t {
     kShadeNormalMap = 2,
     kShadePosition = 4,  ///< highlights or point lights
     kShadeMoved = 8,
+    kShadeHeightMap = 16,
 };
 
+constexpr int kAttributeStride = sizeof(VertexAttributes) / sizeof(float);
+constexpr int kTangentStride = sizeof(VertexTangent) / sizeof(float);
+
 struct Surface {
-    const float* attributes = nullptr;  ///< VertexAttributes as floats, stride 5
-    const float* tangents = nullptr;    ///< VertexTangent as floats, stride 4
+    const float* attributes = nullptr;  ///< VertexAttributes as floats, stride kAttributeStride
+    const float* tangents = nullptr;    ///< VertexTangent as floats, stride kTangentStride
     const float *x = nullptr, *y = nullptr, *z = nullptr;
     const uint32_t* indices = nullptr;
     const Material* material = nullptr;
     const Texture* colour = nullptr;
     const Texture* normal = nullptr;
     const AlphaTexture* alpha = nullptr;
+    const AlphaTexture* height = nullptr;
     uint32_t instance = 0;
     uint8_t features = 0;
     int shininess = 0;  ///< 0 = no highlight

@@ -19,7 +19,9 @@
 // In pipeline order: each rests on those before.
 // clang-format off
 #include "rasterizer/internal/vertex-inl.h"
+#include "rasterizer/internal/surface-inl.h"
 #include "rasterizer/internal/sampler-inl.h"
+#include "rasterizer/internal/parallax-inl.h"
 #include "rasterizer/internal/shade-inl.h"
 #include "rasterizer/internal/visibility-inl.h"
 // clang-format on

@@ -1,121 +1,10 @@
-// Texture sampling, one pixel per lane; see shade_reference.cpp for the truth.
+// Texture sampling, one pixel per lane; see sampler_reference.cpp for the truth.
 // Included once per target by kernels_simd.cpp.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using FTag = hn::CappedTag<float, 8>;
-using ITag = hn::RebindToSigned<FTag>;
-using UTag = hn::RebindToUnsigned<FTag>;
-using FVec = hn::Vec<FTag>;
-using IVec = hn::Vec<ITag>;
-using UVec = hn::Vec<UTag>;
-using FMask = hn::Mask<FTag>;
-
-HWY_INLINE FVec splat(float v) {
-    return hn::Set(FTag(), v);
-}
-
-HWY_INLINE IVec splatInt(int32_t v) {
-    return hn::Set(ITag(), v);
-}
-
-struct Vec3 {
-    FVec x, y, z;
-};
-
-HWY_INLINE FVec dot3(const Vec3& a, const Vec3& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-HWY_INLINE Vec3 scale3(const Vec3& a, FVec s) {
-    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-
-HWY_INLINE Vec3 normalize3(const Vec3& a) {
-    const FVec length = hn::Sqrt(hn::Max(dot3(a, a), splat(kTiny)));
-    return scale3(a, hn::Div(splat(1.0f), length));
-}
-
-/// Which triangle each lane shades. With kUniform all lanes have the same one and everything that
-/// belongs to it is broadcast; otherwise it is gathered. Both give the same values.
-template <bool kUniform>
-struct LaneTriangles;
-
-template <>
-struct LaneTriangles<true> {
-    const ShadeTriangle* t;
-
-    FVec word(int i) const { return splat(reinterpret_cast<const float*>(t)[i]); }
-    FVec vertexField(const float* base, int stride, int field, int k) const {
-        return splat(base[t->vertex[k] * stride + field]);
-    }
-};
-
-template <>
-struct LaneTriangles<false> {
-    const float* words;  ///< of the tile's shade array
-    IVec first_word;     ///< of each lane's triangle
-    IVec vertex[3];
-
-    FVec word(int i) const {
-        return hn::GatherIndex(FTag(), words, hn::Add(first_word, splatInt(i)));
-    }
-    FVec vertexField(const float* base, int stride, int field, int k) const {
-        const IVec at = hn::Add(hn::Mul(vertex[k], splatInt(stride)), splatInt(field));
-        return hn::GatherIndex(FTag(), base, at);
-    }
-};
-
-/// Word offsets of ShadeTriangle.
-enum : int {
-    kWordP = 0,
-    kWordDx = 3,
-    kWordDy = 6,
-    kWordAnchorX = 9,
-    kWordAnchorY = 10,
-    kWordVertex = 11,
-    kWordFlip = 15
-};
-
-struct LaneBarycentrics {
-    FVec b[3];
-    FVec w;
-};
-
-template <class Triangles>
-HWY_INLINE LaneBarycentrics barycentrics(const Triangles& t, FVec x, FVec y) {
-    LaneBarycentrics p;
-    const FVec rx = hn::Sub(x, t.word(kWordAnchorX));
-    const FVec ry = hn::Sub(y, t.word(kWordAnchorY));
-    for (int k = 0; k < 3; ++k) {
-        const FVec v = hn::Add(hn::Add(t.word(kWordP + k), hn::Mul(t.word(kWordDy + k), ry)),
-                               hn::Mul(t.word(kWordDx + k), rx));
-        p.b[k] = hn::Max(v, hn::Zero(FTag()));
-    }
-    p.w = hn::Div(splat(1.0f), hn::Max(hn::Add(hn::Add(p.b[0], p.b[1]), p.b[2]), splat(kTiny)));
-    for (FVec& b : p.b) {
-        b = hn::Mul(b, p.w);
-    }
-    return p;
-}
-
-HWY_INLINE FVec interpolate3(const FVec b[3], FVec f0, FVec f1, FVec f2) {
-    return hn::Add(hn::Add(hn::Mul(b[0], f0), hn::Mul(b[1], f1)), hn::Mul(b[2], f2));
-}
-
-template <class Triangles>
-HWY_INLINE FVec attribute(const Triangles& t, const LaneBarycentrics& p, const float* base,
-                          int stride, int field) {
-    return interpolate3(p.b, t.vertexField(base, stride, field, 0),
-                        t.vertexField(base, stride, field, 1),
-                        t.vertexField(base, stride, field, 2));
-}
-
-constexpr int kAttributeStride = 5;
-constexpr int kTangentStride = 4;
 
 struct LaneTexture {
     FVec u, v;
@@ -306,14 +195,17 @@ HWY_INLINE FVec sampleAlphaLevel(const AlphaTexture& texture, IVec level, FVec u
     return bilinear(f, t);
 }
 
-HWY_INLINE FVec sampleAlpha(const AlphaTexture& texture, const LaneTexture& c, int bias_fx8) {
-    const LaneMip m = mipOf(c, texture.levels, bias_fx8);
-    FVec alpha = sampleAlphaLevel(texture, m.level0, c.u, c.v);
+/// The texture at (u, v), in the levels of `m`.
+HWY_INLINE FVec sampleAlphaAt(const AlphaTexture& texture, const LaneMip& m, FVec u, FVec v) {
+    FVec alpha = sampleAlphaLevel(texture, m.level0, u, v);
     if (!m.single) {
-        const FVec coarser = sampleAlphaLevel(texture, m.level1, c.u, c.v);
-        alpha = mix(alpha, coarser, m.fraction);
+        alpha = mix(alpha, sampleAlphaLevel(texture, m.level1, u, v), m.fraction);
     }
     return hn::Mul(alpha, splat(1.0f / 255.0f));
+}
+
+HWY_INLINE FVec sampleAlpha(const AlphaTexture& texture, const LaneTexture& c, int bias_fx8) {
+    return sampleAlphaAt(texture, mipOf(c, texture.levels, bias_fx8), c.u, c.v);
 }
 
 }  // namespace HWY_NAMESPACE

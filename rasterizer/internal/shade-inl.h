@@ -21,40 +21,7 @@ struct Group {
     FVec depth;
 };
 
-template <bool kUniform>
-HWY_INLINE Vec3 objectPosition(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                               const Surface& s) {
-    return {attribute(t, p, s.x, 1, 0), attribute(t, p, s.y, 1, 0), attribute(t, p, s.z, 1, 0)};
-}
-
-HWY_INLINE FVec affineRow(const float* m, const Vec3& p) {
-    return hn::Add(hn::Add(hn::Mul(splat(m[0]), p.x), hn::Mul(splat(m[1]), p.y)),
-                   hn::Add(hn::Mul(splat(m[2]), p.z), splat(m[3])));
-}
-
-HWY_INLINE FVec linearRow(const float* m, const Vec3& v) {
-    return hn::Add(hn::Add(hn::Mul(splat(m[0]), v.x), hn::Mul(splat(m[1]), v.y)),
-                   hn::Mul(splat(m[2]), v.z));
-}
-
-template <bool kUniform>
-HWY_INLINE Vec3 worldTangent(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                             const Surface& s, const InstanceSetup& instance) {
-    Vec3 v{attribute(t, p, s.tangents, kTangentStride, 0),
-           attribute(t, p, s.tangents, kTangentStride, 1),
-           attribute(t, p, s.tangents, kTangentStride, 2)};
-    if (!instance.identity) {
-        const float* m = instance.world.data();
-        v = {linearRow(m, v), linearRow(m + 4, v), linearRow(m + 8, v)};
-    }
-    return normalize3(v);
-}
-
-HWY_INLINE Vec3 bumped(const Vec3& n, const Vec3& t, FVec handedness, const Vec3& raw) {
-    const Vec3 b = scale3({hn::Sub(hn::Mul(n.y, t.z), hn::Mul(n.z, t.y)),
-                           hn::Sub(hn::Mul(n.z, t.x), hn::Mul(n.x, t.z)),
-                           hn::Sub(hn::Mul(n.x, t.y), hn::Mul(n.y, t.x))},
-                          handedness);
+HWY_INLINE Vec3 bumped(const Vec3& n, const Vec3& t, const Vec3& b, const Vec3& raw) {
     const auto unpack = [](FVec v) {
         return hn::Sub(hn::Mul(v, splat(kTexelToNormal)), splat(1.0f));
     };
@@ -69,19 +36,12 @@ template <bool kFull, bool kUniform>
 HWY_INLINE Vec3 shadingNormal(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
                               const Surface& s, const InstanceSetup& instance,
                               const LaneTexture& c) {
-    Vec3 n{attribute(t, p, s.attributes, kAttributeStride, 0),
-           attribute(t, p, s.attributes, kAttributeStride, 1),
-           attribute(t, p, s.attributes, kAttributeStride, 2)};
-    if (!instance.identity) {
-        const float* m = instance.normal;
-        n = {linearRow(m, n), linearRow(m + 3, n), linearRow(m + 6, n)};
-    }
-    n = normalize3(n);
+    Vec3 n = worldNormal(t, p, s, instance);
     if constexpr (kFull) {
         if (s.normal != nullptr) {
             const Vec3 tangent = worldTangent(t, p, s, instance);
-            const FVec handedness = t.vertexField(s.tangents, kTangentStride, 3, 0);
-            n = bumped(n, tangent, handedness, sampleTexture<false>(*s.normal, c, s.mip_bias_fx8));
+            const Vec3 bitangent = worldBitangent(t, s, instance, n, tangent);
+            n = bumped(n, tangent, bitangent, sampleTexture<false>(*s.normal, c, s.mip_bias_fx8));
         }
     }
     return scale3(n, t.word(kWordFlip));
@@ -133,15 +93,8 @@ HWY_INLINE LaneLight lightSurface(const Group& group, const LaneTriangles<kUnifo
         {zero, zero, zero}};
     Vec3 position{zero, zero, zero}, to_eye{zero, zero, zero};
     if (kFull && (s.features & kShadePosition) != 0) {
-        position = objectPosition(t, p, s);
-        if (!instance.identity) {
-            const float* m = instance.world.data();
-            position = {affineRow(m, position), affineRow(m + 4, position),
-                        affineRow(m + 8, position)};
-        }
-        const glm::vec3& eye = group.tile->frame->view->eye;
-        to_eye = normalize3({hn::Sub(splat(eye.x), position.x), hn::Sub(splat(eye.y), position.y),
-                             hn::Sub(splat(eye.z), position.z)});
+        position = worldPosition(t, p, s, instance);
+        to_eye = towardsEye(*group.tile->frame->view, position);
     }
     const std::array<float, 3>& d = lighting.sun.direction;
     const int shininess = kFull ? s.shininess : 0;
@@ -254,7 +207,8 @@ HWY_INLINE GroupOutput backgroundOutput(const Group& group) {
     return out;
 }
 
-/// Levels of specialisation: 0 = plain colours, 1 = textures, 2 = everything.
+/// Levels of specialisation: 0 = plain colours, 1 = textures, 2 = everything but height maps, 3 =
+/// with them.
 template <int kLevel, bool kUniform>
 HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUniform>& t,
                                     uint32_t surface) {
@@ -265,6 +219,9 @@ HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUni
     LaneTexture c{};
     if (kLevel >= 1 && (s.features & (kShadeTexture | kShadeNormalMap)) != 0) {
         c = textureCoordinates(t, p, s);
+        if (kLevel >= 3 && s.height != nullptr) {
+            c = displacedCoordinates(frame, t, p, s, c);
+        }
     }
     const Vec3 n = shadingNormal<kLevel >= 2>(t, p, s, instance, c);
     const LaneLight lit = lightSurface<kLevel >= 2>(group, t, p, s, instance, n);
@@ -449,7 +406,9 @@ HWY_NOINLINE void shadeTileLevel(const TileContext& tile) {
 }
 
 void shadeTile(const TileContext& tile) {
-    if ((tile.features & (kShadeNormalMap | kShadePosition)) != 0) {
+    if ((tile.features & kShadeHeightMap) != 0) {
+        shadeTileLevel<3>(tile);
+    } else if ((tile.features & (kShadeNormalMap | kShadePosition)) != 0) {
         shadeTileLevel<2>(tile);
     } else if ((tile.features & kShadeTexture) != 0) {
         shadeTileLevel<1>(tile);
@@ -465,7 +424,7 @@ HWY_NOINLINE void shadeFragments(const TileContext& tile, uint32_t ref, int x, i
     const ptrdiff_t at = y * tile.planes.stride + x;
     const LaneTriangles<true> t{&tile.shade[ref]};
     GroupOutput out = loadGroup(group, at);
-    merge(out, shadeSurface<2>(group, t, uint32_t(t.t->surface)), hn::RebindMask(ITag(), mask));
+    merge(out, shadeSurface<3>(group, t, uint32_t(t.t->surface)), hn::RebindMask(ITag(), mask));
     storeGroup(group, out, at);
 }
 

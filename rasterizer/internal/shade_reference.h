@@ -1,19 +1,10 @@
 #pragma once
 // The scalar truth of shading, one pixel at a time. Steps are the same, in the same order, as in
-// sampler-inl.h and shade-inl.h.
+// shade-inl.h.
 
 #include "rasterizer/internal/kernels.h"
 
 namespace still::internal {
-
-/// Perspective-correct barycentrics of a pixel and what texture sampling derives from them.
-struct PixelBarycentrics {
-    float b[3];
-    float w;  ///< of the surface point (1 / Σ p)
-    const ShadeTriangle* triangle;
-};
-
-PixelBarycentrics barycentricsAt(const ShadeTriangle& triangle, int x, int y);
 
 /// Whether the sample exists: alpha test, or the stochastic draw of this pixel.
 bool alphaPasses(const TileContext& tile, const ShadeTriangle& triangle, int x, int y);

@@ -18,6 +18,13 @@ constexpr float kTexelToLinear = 1.0f / (1023.0f * 1023.0f);
 constexpr float kTexelToNormal = 2.0f / 1023.0f;
 constexpr uint32_t kTexelMask = 1023;
 
+/// Depth layers of a height map between top and bottom, and the flattest ray that is followed as it
+/// is: flatter ones would shear the picture by more than 8 times its height (offset limiting, Welsh
+/// 2004).
+constexpr int kParallaxSteps = 16;
+constexpr float kParallaxStep = 1.0f / kParallaxSteps;
+constexpr float kParallaxMinCosine = 0.125f;
+
 constexpr float kColourScale = 4096.0f;  ///< fx12
 constexpr float kColourMax = 15.9998f;   ///< rounds to 65535 at most
 constexpr float kSnormScale = 32767.0f;

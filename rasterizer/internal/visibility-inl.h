@@ -46,7 +46,11 @@ HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangl
     if (s.alpha != nullptr) {
         const LaneTriangles<true> t{&triangle};
         const LaneBarycentrics p = barycentrics(t, hn::Iota(FTag(), float(x)), splat(float(y)));
-        alpha = hn::Mul(alpha, sampleAlpha(*s.alpha, textureCoordinates(t, p, s), s.mip_bias_fx8));
+        LaneTexture c = textureCoordinates(t, p, s);
+        if (s.height != nullptr) {
+            c = displacedCoordinates(*tile.frame, t, p, s, c);
+        }
+        alpha = hn::Mul(alpha, sampleAlpha(*s.alpha, c, s.mip_bias_fx8));
     }
     if (s.material->alpha_mode == AlphaMode::test) {
         return hn::Ge(alpha, splat(0.5f));

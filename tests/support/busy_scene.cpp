@@ -79,6 +79,10 @@ void addMaterials(TestScene& scene, Random& random) {
             m.u_offset = 0.37f;
             m.v_offset = -0.84f;
         }
+        if (k % 5 < 2) {
+            m.height_texture = k % 2;
+            m.height_scale = 0.05f * float(1 + k % 3);
+        }
         scene.materials.push_back(m);
     }
 }
