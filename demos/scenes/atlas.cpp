@@ -137,6 +137,25 @@ std::vector<AtlasCase> shadingCases() {
     };
 }
 
+std::vector<AtlasCase> surfaceCases() {
+    return {
+        eventCase("material-swap", "The old material shines through when a surface gets another.",
+                  "recovery_frames", makeMaterialSwap),
+        movingCase("texture-scroll",
+                   "A texture runs over a still surface: motion vectors say that nothing moves.",
+                   "flip", makeTextureScroll),
+        movingCase("screen", "The picture on a screen changes and its surface does not.", "flip",
+                   makeScreen),
+        movingCase("moving-shadow", "A shadow that wanders over still ground leaves a trail.",
+                   "flip", makeMovingShadow),
+        movingCase("noise", "Every frame has another noise, of which a history keeps the mean.",
+                   "psnr", makeNoise),
+        movingCase("low-resolution",
+                   "Cells of many pixels change at a quarter of the frame rate, all at once.",
+                   "flip", makeLowResolution),
+    };
+}
+
 std::vector<AtlasCase> startCases() {
     AtlasCase cut = eventCase("cut",
                               "After a cut there is no history; what is used of the old picture "
@@ -193,13 +212,16 @@ std::vector<AtlasCase> startCases() {
 }
 
 std::vector<AtlasCase> courtyardCases() {
+    AtlasCase pan =
+        movingCase("courtyard-pan",
+                   "A pan of 4 pixels per frame at 960×540 blurs a whole picture of fine detail.",
+                   "psnr", makeCourtyardPan);
+    pan.segments.insert(pan.segments.begin(), {.name = "first", .first = 0, .last = 0});
     return {
         movingCase("courtyard-still",
                    "Most of the picture stands, and moving things in it leave ghosts.",
                    "ghost_area", makeCourtyardStill),
-        movingCase("courtyard-pan",
-                   "A pan of 4 pixels per frame at 960×540 blurs a whole picture of fine detail.",
-                   "psnr", makeCourtyardPan),
+        pan,
         movingCase("courtyard-orbit",
                    "An orbit gives every depth another motion, and objects move on top of it.",
                    "psnr", makeCourtyardOrbit),
@@ -209,7 +231,7 @@ std::vector<AtlasCase> courtyardCases() {
 std::vector<AtlasCase> allCases() {
     std::vector<AtlasCase> all;
     for (const auto& group : {edgeCases(), patternCases(), cameraCases(), shadingCases(),
-                              startCases(), courtyardCases()}) {
+                              surfaceCases(), startCases(), courtyardCases()}) {
         all.insert(all.end(), group.begin(), group.end());
     }
     return all;

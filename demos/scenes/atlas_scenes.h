@@ -14,7 +14,7 @@ Scene makeWiresPan();      ///< the same under a camera at 1.7 px/frame
 Scene makeFenceStill();    ///< chain link with wires of about 1.2 px
 Scene makeFencePan();      ///< the same under a camera at 2.3 px/frame
 Scene makeLeavesStill();   ///< alpha-tested cards
-Scene makeLeavesTurn();    ///< the same, turning, outermost leaves at 1.5 px/frame
+Scene makeLeavesTurn();    ///< the same, turning, the nearest leaves at 1.85 px/frame
 Scene makeHdrStill();      ///< bars of emission 16 before a dark wall
 Scene makeHdrMove();       ///< the same, bars at (1.3, 0.4) px/frame
 Scene makeSliversStill();  ///< 100,352 triangles on 100 × 100 pixels
@@ -34,7 +34,7 @@ Scene makeDitherStill();     ///< ordered-dither alpha, about one texel per pixe
 Scene makeDitherPan();       ///< the same under a camera at 0.7 px/frame
 
 // atlas_camera.cpp
-Scene makeRotate();       ///< turning cube and knot, corners at 2.2 px/frame
+Scene makeRotate();       ///< turning cube and knot, corners at up to 2.9 px/frame
 Scene makeRoll();         ///< camera rolls by 1°/frame: 2.8 px/frame at the left and right border
 Scene makeZoom();         ///< field of view closes: about 2.2 px/frame at the left and right
 Scene makeFastPan();      ///< 60 px/frame
@@ -52,5 +52,13 @@ Scene makeLightOff();      ///< the lamp goes off at frame 24
 Scene makeLightFlicker();  ///< another brightness in every frame
 Scene makeGlassStill();    ///< stochastic panes, one behind the other
 Scene makeGlassMove();     ///< panes slide at ±1.5 px/frame
+
+// atlas_surface.cpp
+Scene makeMaterialSwap();   ///< wall and boxes have other materials from frame 24 on
+Scene makeTextureScroll();  ///< textures run at (1.5, 0) and (0.4, 0.7) px/frame on still belts
+Scene makeScreen();         ///< a flip book, one page every other frame
+Scene makeMovingShadow();   ///< dapples run at (1.2, 0.3) px/frame over still ground
+Scene makeNoise();          ///< snow of 1.5-pixel grains, all new in every frame
+Scene makeLowResolution();  ///< 32 × 18 flat cells, renewed every 4th frame, pan of 0.6 px/frame
 
 }  // namespace still::scenes::atlas

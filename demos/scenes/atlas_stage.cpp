@@ -80,7 +80,8 @@ void addBoxes(Scene& scene, double half, int count, uint32_t seed) {
             const double rise = hashRange(i, 2, seed, 1.5, 6.0);
             const dvec3 foot{-half + 2 * half * (i + 0.5) / count, -5,
                              hashRange(i, 0, seed, -2.5, 1.0)};
-            out.box(foot - dvec3{size, 0, 0.4}, foot + dvec3{size, rise, 0.4}, 2.0);
+            const dvec3 up{0, i % 4 == 1 ? 10 - rise : 0.0, 0};  // some hang
+            out.box(foot + up - dvec3{size, 0, 0.4}, foot + up + dvec3{size, rise, 0.4}, 2.0);
         }
     }
     addObject(scene, "boxes", out.take());

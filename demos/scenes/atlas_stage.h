@@ -53,7 +53,8 @@ void slide(SceneObject& object, const dvec3& middle, const dvec2& speed);
 /// Brick wall at depth z, from −half to +half, bricks of about 17 × 8 pixels at z = 0.
 void addWall(Scene& scene, double z, const dvec2& half, uint32_t seed);
 
-/// Checkered boxes of all sizes between x = −half and half, at depths from −2.5 to 1.
+/// Checkered boxes of all sizes, standing and hanging, between x = −half and half, at depths from
+/// −2.5 to 1.
 void addBoxes(Scene& scene, double half, int count, uint32_t seed);
 
 /// Only the first level is left: the texture is point-sampled however far away it is, which is what
