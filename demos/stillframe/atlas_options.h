@@ -1,0 +1,32 @@
+#pragma once
+// The command lines of `stillframe atlas` and `stillframe chart`, as they were typed.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/stillframe/options.h"
+
+namespace still::command {
+
+struct AtlasOptions {
+    std::string scenes;   ///< comma-separated names of cases; empty: all that are not slow
+    std::string presets;  ///< comma-separated columns; empty: raw, fxaa and all presets
+    Size resolution{320, 180};
+    std::string cache;   ///< folder; empty: the user's
+    std::string output;  ///< folder, made when it is not there
+    bool json = false;
+};
+
+struct ChartOptions {
+    std::vector<std::string> scenes;  ///< FILE.obj, FILE.json or builtin:NAME
+    std::string output;               ///< folder, made when it is not there
+    std::string cache;                ///< folder; empty: the user's
+    Size resolution{640, 360};
+    int frames = 64;             ///< of each segment
+    double orbit_deg = 1.0 / 3;  ///< of the moving segment, per frame
+    int reference_samples = 256;
+    bool json = false;
+};
+
+}  // namespace still::command
