@@ -1,7 +1,9 @@
-// One frame: FrameState → (sub-frames or ssaa samples: transform, bin, raster, resolve) → encode.
+// One frame: FrameState → (sub-frames or ssaa samples: transform, bin, raster, resolve or filter)
+// → encode.
 
 #include "engine/frame_loop.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "engine/jitter.h"
@@ -69,6 +71,8 @@ struct FrameLoop::State {
     ColourImages mean;
     StageTimes times;
     int resolved_frame = kNoFrame;  ///< the frame that the TAA history ends with
+    int resize_frame = 0;           ///< the first frame of the present size
+    bool resized = false;           ///< resize_frame is the one that is rendered next
 
     /// Runs `stage` and adds its time to `total_ms`.
     template <class Stage>
@@ -82,12 +86,38 @@ struct FrameLoop::State {
         total_ms += settings.clock_ms() - start_ms;
     }
 
+    bool temporal() const { return settings.anti_aliasing == AntiAliasing::taa; }
+    int historyStart(int frame) const;
+    RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
+    SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
+    void resolve(const FrameState& frame);
     void resolveFrame(int frame);
     void resolveHistory(int frame);
     void averageSamples(int frame);
     ColourPlanes colour() const;
 };
+
+/// The frame whose history is empty and on which `frame` builds.
+int FrameLoop::State::historyStart(int frame) const {
+    const int cut = lastCut(scene, frame);
+    return resize_frame <= frame ? std::max(cut, resize_frame) : cut;
+}
+
+/// Nothing is computed that the policy does not use.
+RasterSettings FrameLoop::State::rasterSettings() const {
+    RasterSettings raster{
+        .simd = settings.simd, .shading = settings.shading, .planes = settings.planes};
+    if (temporal()) {
+        const TaaPolicy& policy = settings.policy;
+        const bool gathers = policy.method == Method::gather;
+        raster.planes.motion = true;
+        raster.planes.normal |= gathers || policy.normal_reject_q15 > 0;
+        raster.mip_bias_fx8 = policy.mip_bias_fx8;
+        raster.camera_motion_only = !gathers && policy.motion == MotionSource::camera;
+    }
+    return raster;
+}
 
 void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset offset,
                                        uint32_t sample) {
@@ -106,12 +136,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                          .jitter_x_fx8 = offset.x_fx8,
                          .jitter_y_fx8 = offset.y_fx8,
                          .sample = sample};
-    PlaneSet planes = settings.planes;
-    if (settings.anti_aliasing == AntiAliasing::taa) {
-        planes = {.normal = true, .motion = true};
-    }
-    const RasterSettings raster{
-        .simd = settings.simd, .shading = settings.shading, .planes = planes};
+    const RasterSettings raster = rasterSettings();
     timed(times.transform_bin_ms, [&] { rasterizer.transformAndBin(list, view, raster, workers); });
     timed(times.raster_ms, [&] { rasterizer.rasterize(gbuffer, workers); });
 }
@@ -128,29 +153,43 @@ static void freeze(FrameState& frame) {
     }
 }
 
-/// Renders one frame into the history, which must end with the frame before (or frame is a cut).
+/// Where the sample lies: a camera file's word goes before the policy's pattern.
+SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample) const {
+    if (frame.jitter_fx8 && settings.subframes == 1) {
+        return {(*frame.jitter_fx8)[0], (*frame.jitter_fx8)[1]};
+    }
+    const TaaPolicy& policy = settings.policy;
+    return jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, sample);
+}
+
+/// Takes the sample that was just rasterized into the history.
+void FrameLoop::State::resolve(const FrameState& frame) {
+    const TaaFrame evidence{.reset = frame.cut, .shading_changed = frame.lighting_changed};
+    const TaaSettings taa_settings{.simd = settings.simd,
+                                   .sample_cap = int(jitterPeriod(settings.policy.jitter))};
+    taa.resolve(gbuffer, evidence, taa_settings, workers);
+}
+
+/// Renders one frame into the history, which must end with the frame before (or `frame` is a
+/// historyStart).
 void FrameLoop::State::resolveFrame(int frame) {
     FrameState state = frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
-    const uint32_t since_cut = uint32_t(frame - lastCut(scene, frame));
+    const int start = historyStart(frame);
+    state.cut |= frame == start;
     const uint32_t subframes = uint32_t(settings.subframes);
     for (uint32_t i = 0; i < subframes; ++i) {
-        const uint32_t sample = since_cut * subframes + i;
-        SampleOffset offset = taaSample(sample);
-        if (state.jitter_fx8 && subframes == 1) {
-            offset = {(*state.jitter_fx8)[0], (*state.jitter_fx8)[1]};
-        }
+        const uint32_t sample = uint32_t(frame - start) * subframes + i;
+        const SampleOffset offset = offsetOf(state, sample);
         rasterizeSample(state, offset, sample);
-        const TaaFrame evidence{.reset = state.cut, .shading_changed = state.lighting_changed};
-        const TaaSettings taa_settings{.simd = settings.simd, .sample_cap = int(kTaaPeriod)};
-        timed(times.taa_ms, [&] { taa.resolve(gbuffer, evidence, taa_settings, workers); });
+        timed(times.taa_ms, [&] { resolve(state); });
         freeze(state);
     }
     resolved_frame = frame;
 }
 
-/// Brings the history to `frame`, from the last cut when it does not end right before.
+/// Brings the history to `frame`, from its start when it does not end right before.
 void FrameLoop::State::resolveHistory(int frame) {
-    const int first = resolved_frame == frame - 1 ? frame : lastCut(scene, frame);
+    const int first = resolved_frame == frame - 1 ? frame : historyStart(frame);
     for (int replayed = first; replayed <= frame; ++replayed) {
         times = {};
         resolveFrame(replayed);
@@ -163,7 +202,7 @@ void FrameLoop::State::averageSamples(int frame) {
     const bool single = settings.anti_aliasing == AntiAliasing::none;
     const uint32_t count = single ? 1 : uint32_t(settings.ssaa_samples);
     if (count == 1) {
-        rasterizeSample(state, {}, single ? uint32_t(frame - lastCut(scene, frame)) : 0);
+        rasterizeSample(state, {}, single ? uint32_t(frame - historyStart(frame)) : 0);
         return;
     }
     const auto resize = [&](auto& images) {
@@ -189,7 +228,7 @@ void FrameLoop::State::averageSamples(int frame) {
 }
 
 ColourPlanes FrameLoop::State::colour() const {
-    if (settings.anti_aliasing == AntiAliasing::taa) {
+    if (temporal()) {
         return taa.colour();
     }
     const bool averaged = settings.anti_aliasing == AntiAliasing::ssaa && settings.ssaa_samples > 1;
@@ -201,7 +240,8 @@ FrameLoop::FrameLoop(const Scene& scene, const FrameSettings& settings, Workers&
     : state_(std::make_unique<State>(scene, settings, workers)) {
     assert(settings.ssaa_samples >= 1 && settings.ssaa_samples <= 65536);
     assert(settings.subframes >= 1);
-    resize(settings.width, settings.height);
+    assert(settings.width >= 1 && settings.width <= kMaxTargetSize);
+    assert(settings.height >= 1 && settings.height <= kMaxTargetSize);
 }
 
 FrameLoop::~FrameLoop() = default;
@@ -210,8 +250,11 @@ FrameResult FrameLoop::render(int frame) {
     assert(frame >= 0);
     State& state = *state_;
     state.times = {};
-    const bool temporal = state.settings.anti_aliasing == AntiAliasing::taa;
-    if (temporal) {
+    if (state.resized) {
+        state.resize_frame = frame;
+        state.resized = false;
+    }
+    if (state.temporal()) {
         state.resolveHistory(frame);
     } else {
         state.averageSamples(frame);
@@ -225,8 +268,10 @@ FrameResult FrameLoop::render(int frame) {
     result.linear = state.colour();
     result.gbuffer = &state.gbuffer;
     result.times = state.times;
-    if (temporal) {
+    if (state.temporal()) {
         result.sample_count = state.taa.sampleCount();
+        result.confidence = result.sample_count;
+        result.confidence_full = int(jitterPeriod(state.settings.policy.jitter));
         result.converged = state.taa.converged();
     }
     return result;
@@ -237,6 +282,7 @@ void FrameLoop::resize(int width, int height) {
     state_->settings.width = width;
     state_->settings.height = height;
     state_->resolved_frame = kNoFrame;
+    state_->resized = true;
 }
 
 const RasterCounters& FrameLoop::counters() const {

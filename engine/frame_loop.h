@@ -1,5 +1,5 @@
 #pragma once
-// Scene and settings in, frames out: timeline → rasterizer → TAA (or ssaa) → 8-bit image.
+// Scene and settings in, frames out: timeline → rasterizer → TAA (or ssaa, fxaa) → 8-bit image.
 
 #include <functional>
 #include <memory>
@@ -7,21 +7,28 @@
 #include "engine/scene.h"
 #include "engine/timeline.h"
 #include "postfx/encode.h"
+#include "postfx/policy.h"
 #include "postfx/taa.h"
 #include "rasterizer/rasterizer.h"
 
 namespace still {
 
-enum class AntiAliasing { none, taa, ssaa };
+enum class AntiAliasing {
+    none,  ///< one sample in the pixel's centre
+    taa,   ///< FrameSettings::policy
+    fxaa,  ///< the sample in the pixel's centre, edges smoothed by brightness: postfx/spatial.h
+    ssaa,  ///< FrameSettings::ssaa_samples
+};
 
 struct FrameSettings {
     int width = 1280, height = 720;
     AntiAliasing anti_aliasing = AntiAliasing::taa;
+    TaaPolicy policy{};     ///< used with AntiAliasing::taa; the preset `still`
     int ssaa_samples = 64;  ///< 1 … 65536, used with AntiAliasing::ssaa
     ToneMap tone_map = ToneMap::none;
     SimdTarget simd = bestSimdTarget();
     Shading shading = Shading::deferred;
-    PlaneSet planes{};  ///< in addition to what the settings need
+    PlaneSet planes{};  ///< in addition to what the other settings need
     CameraChoice camera{};
     /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
     /// (a finished picture instead of a raw first frame).
@@ -38,11 +45,16 @@ struct StageTimes {
 /// What render() hands out; views are valid until the next render().
 struct FrameResult {
     ImageView<const Rgb8> output;
-    ColourPlanes linear;                ///< the same before encoding, fx12
-    const GBuffer* gbuffer = nullptr;   ///< of the last sub-frame
-    ImageView<const uint8_t> sample_count;  ///< empty without TAA
+    ColourPlanes linear;                    ///< the same before encoding, fx12
+    const GBuffer* gbuffer = nullptr;       ///< of the last sub-frame
+    ImageView<const uint8_t> sample_count;  ///< Method::gather only, else empty
+    /// How much of a pixel is known, up to confidence_full; empty without TAA. Samples in the
+    /// pixel (Method::gather), or trust in history.
+    ImageView<const uint8_t> confidence;
+    int confidence_full = 255;
     StageTimes times;
-    bool converged = false;  ///< TAA only: further frames of a still scene will not differ
+    /// Method::gather only: further frames of a still scene will not differ.
+    bool converged = false;
 };
 
 class FrameLoop {
@@ -53,11 +65,13 @@ class FrameLoop {
     FrameLoop(const FrameLoop&) = delete;
     FrameLoop& operator=(const FrameLoop&) = delete;
 
-    /// Renders frame `frame`. Frames that it depends on (back to the last cut) are replayed unseen
-    /// when they were not rendered just before, so any order gives the same bytes.
+    /// Renders frame `frame`. Frames that it depends on (back to the last cut or resize) are
+    /// replayed unseen when they were not rendered just before, so any order gives the same bytes.
     FrameResult render(int frame);
 
-    /// Changes the target size from the next frame on; history starts anew.
+    /// Changes the target size. For history and sample sequence the frame rendered next, R, is a
+    /// cut: from R on, frame N is a function of scene, settings and R.
+    /// Frames before R are those of a loop that has had the new size from the start.
     void resize(int width, int height);
 
     const RasterCounters& counters() const;

@@ -190,17 +190,43 @@ TEST_CASE("frame_loop: sub-frames converge to the mean of a jitter period", "[un
     CHECK(hashPlane(single.render(63).output) == hashPlane(loop.render(0).output));
 }
 
-TEST_CASE("frame_loop: a resized loop equals a fresh one", "[unit][frame_loop]") {
+TEST_CASE("frame_loop: a resized loop begins anew at its next frame", "[unit][frame_loop]") {
     const Scene scene = smallScene(true);
     FrameSettings settings = smallSettings(AntiAliasing::taa);
+    int stages = 0;
+    settings.clock_ms = [&stages] { return double(++stages); };
     Workers workers(1, Schedule::serial);
     FrameLoop loop(scene, settings, workers);
     loop.render(2);
     loop.resize(130, 40);
-    const Bytes resized = bytesOf(loop.render(3));
+    stages = 0;
+    std::map<int, Bytes> resized;
+    resized[3] = bytesOf(loop.render(3));
+    CHECK(stages == 8);  // begin and end of four stages: nothing was replayed
+    resized[4] = bytesOf(loop.render(4));
+    resized[6] = bytesOf(loop.render(6));
+
+    // What was drawn before the resize, and the order after it, do not show.
+    FrameLoop other(scene, settings, workers);
+    other.resize(130, 40);
+    CHECK(bytesOf(other.render(3)) == resized[3]);
+    CHECK(bytesOf(other.render(6)) == resized[6]);
+    CHECK(bytesOf(other.render(4)) == resized[4]);
+
+    // Frames before it, and those after the next cut, are those of a loop that had the size.
     settings.width = 130;
     settings.height = 40;
-    CHECK(resized == renderAll(scene, settings, {3}).at(3));
+    auto fresh = renderAll(scene, settings, {2, 3, 4, 6});
+    CHECK(bytesOf(other.render(2)) == fresh[2]);
+    CHECK(fresh[6] == resized[6]);
+    CHECK_FALSE(fresh[4] == resized[4]);
+
+    // It is a cut.
+    Scene cut = scene;
+    cut.cuts = {3, 5};
+    fresh = renderAll(cut, settings, {3, 4});
+    CHECK(fresh[3].output == resized[3].output);
+    CHECK(fresh[4].output == resized[4].output);
 }
 
 TEST_CASE("frame_loop: a camera file's jitter is used and others are not", "[unit][frame_loop]") {
