@@ -297,6 +297,9 @@ Result<ObjModel> buildModel(const std::filesystem::path& path, ObjFile file) {
     }
     MaterialSet set = buildMaterials(sources);
     model.materials = std::move(set.materials);
+    for (const MtlSource& source : sources) {
+        model.material_names.push_back(source.material.name);
+    }
     model.textures = std::move(set.textures);
     model.alpha_textures = std::move(set.alpha_textures);
     model.warnings.insert(model.warnings.end(), set.warnings.begin(), set.warnings.end());
@@ -343,6 +346,7 @@ uint32_t appendModel(Scene& scene, ObjModel&& model, std::string name) {
         shift(m.colour_texture, scene.textures.size());
         shift(m.normal_texture, scene.textures.size());
         shift(m.alpha_texture, scene.alpha_textures.size());
+        shift(m.height_texture, scene.alpha_textures.size());
     }
     for (MeshPart& part : model.mesh.parts) {
         part.material += uint32_t(scene.materials.size());

@@ -326,6 +326,21 @@ Texture makeNormalTextureFromHeight(ImageView<const Rgba8> image, Wrap wrap, flo
     return texture;
 }
 
+uint8_t luminance(const Rgba8& pixel) {
+    return uint8_t((54 * pixel.r + 183 * pixel.g + 19 * pixel.b + 128) >> 8);
+}
+
+AlphaTexture makeHeightTexture(ImageView<const Rgba8> image, Wrap wrap) {
+    Image<Rgba8> heights(image.width, image.height);
+    for (int y = 0; y < image.height; ++y) {
+        const Rgba8* row = image.row(y);
+        std::transform(row, row + image.width, heights.view().row(y), [](const Rgba8& pixel) {
+            return Rgba8{pixel.r, pixel.g, pixel.b, luminance(pixel)};
+        });
+    }
+    return makeAlphaTexture(heights.view(), wrap, false);
+}
+
 AlphaTexture makeAlphaTexture(ImageView<const Rgba8> image, Wrap wrap, bool preserve_coverage) {
     assert(!image.empty());
     constexpr size_t kSpareBytes = 4;

@@ -13,6 +13,9 @@ struct Rgba8 {
     uint8_t r = 0, g = 0, b = 0, a = 255;
 };
 
+/// Of the encoded values: Rec. 709 weights in 1/256, exact for greys.
+uint8_t luminance(const Rgba8& pixel);
+
 /// sRGB-encoded pixels → colour texture. Alpha is ignored.
 Texture makeColourTexture(ImageView<const Rgba8> image, Wrap wrap);
 
@@ -22,6 +25,9 @@ Texture makeNormalTexture(ImageView<const Rgba8> image, Wrap wrap);
 
 /// Grey height image → normal map by central differences; `bump_scale` as MTL's -bm.
 Texture makeNormalTextureFromHeight(ImageView<const Rgba8> image, Wrap wrap, float bump_scale);
+
+/// Luminance → height map (Material::height_texture): white is the surface, black the deepest.
+AlphaTexture makeHeightTexture(ImageView<const Rgba8> image, Wrap wrap);
 
 /// The alpha channel → alpha texture. `preserve_coverage`, for AlphaMode::test, scales each mip so
 /// that the share of texels ≥ 0.5 stays that of level 0 (Castaño 2010), and ends the chain where

@@ -74,6 +74,13 @@ Track<double> readNumberTrack(const JsonCursor& cursor, double lowest, double hi
     return readTrack(cursor, [=](const JsonCursor& at) { return at.number(lowest, highest); });
 }
 
+Track<glm::dvec2> readOffsetTrack(const JsonCursor& cursor) {
+    return readTrack(cursor, [](const JsonCursor& at) {
+        const std::vector<double> offset = at.numbers(2, -kMaxOffset, kMaxOffset);
+        return glm::dvec2(offset[0], offset[1]);
+    });
+}
+
 Track<glm::dvec3> readScaleTrack(const JsonCursor& cursor) {
     Track<glm::dvec3> track = readTrack(cursor, readScale);
     for (const auto& key : track.keys) {

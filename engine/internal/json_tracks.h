@@ -3,6 +3,7 @@
 // engine/README.md.
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/internal/json.h"
@@ -14,6 +15,8 @@ namespace still {
 constexpr double kMaxCoordinate = 1e9;
 /// Largest colour or intensity; the product of both fits float with ease.
 constexpr double kMaxLight = 1e6;
+/// Largest |offset| of texture coordinates.
+constexpr double kMaxOffset = 1e6;
 /// Largest |frame| of a key or a cut.
 constexpr int kMaxFrame = 10000000;
 
@@ -46,6 +49,8 @@ auto readTrack(const JsonCursor& cursor, Read&& read) -> Track<decltype(read(cur
 
 Track<glm::dvec3> readPointTrack(const JsonCursor& cursor);
 Track<double> readNumberTrack(const JsonCursor& cursor, double lowest, double highest);
+/// Pairs of texture coordinates.
+Track<glm::dvec2> readOffsetTrack(const JsonCursor& cursor);
 /// Numbers (the same in all axes) or vectors; components keep their sign and are never 0.
 Track<glm::dvec3> readScaleTrack(const JsonCursor& cursor);
 

@@ -69,13 +69,13 @@ bool isGrey(ImageView<const Rgba8> image) {
     });
 }
 
-/// A copy whose alpha is the luminance (Rec. 709 weights in 1/256; exact for greys).
+/// A copy whose alpha is the luminance.
 Image<Rgba8> luminanceAsAlpha(ImageView<const Rgba8> image) {
     Image<Rgba8> out(image.width, image.height);
     for (int y = 0; y < image.height; ++y) {
         const Rgba8* row = image.row(y);
         std::transform(row, row + image.width, out.view().row(y), [](const Rgba8& p) {
-            return Rgba8{p.r, p.g, p.b, uint8_t((54 * p.r + 183 * p.g + 19 * p.b + 128) >> 8)};
+            return Rgba8{p.r, p.g, p.b, luminance(p)};
         });
     }
     return out;

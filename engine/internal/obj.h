@@ -16,6 +16,7 @@ namespace still {
 struct ObjModel {
     Mesh mesh;
     std::vector<Material> materials;
+    std::vector<std::string> material_names;  ///< one each, as in the MTL; "" of undefined ones
     std::vector<Texture> textures;
     std::vector<AlphaTexture> alpha_textures;
     std::vector<std::string> warnings;  ///< one line each, naming the file

@@ -7,6 +7,7 @@
 #include "engine/internal/json_tracks.h"
 #include "engine/internal/obj.h"
 #include "engine/internal/obj_text.h"
+#include "engine/internal/scene_materials.h"
 #include "engine/internal/tracks.h"
 #include "engine/load.h"
 #include "engine/shapes.h"
@@ -37,8 +38,8 @@ class SceneFileReader {
     void readObjects();
     void readObject(const JsonCursor& cursor, size_t number);
     void addObject(SceneObject object, uint32_t mesh);
-    uint32_t meshOf(const JsonCursor& obj);
-    uint32_t shapeOf(const JsonCursor& shape, const Material& material);
+    const ObjMaterials& objOf(const JsonCursor& obj);
+    uint32_t shapeOf(const JsonCursor& shape);
     void readCamera(const JsonCursor& cursor);
     void readCameraFile(const JsonCursor& file);
     void readViews(const JsonCursor& cursor);
@@ -52,30 +53,9 @@ class SceneFileReader {
     JsonReport report_;
     JsonCursor root_;
     Scene scene_;
-    std::map<std::filesystem::path, uint32_t> mesh_of_file_;
+    SceneMaterials materials_{folder_, scene_};
+    std::map<std::filesystem::path, ObjMaterials> obj_of_file_;
 };
-
-Material readMaterial(const JsonCursor& cursor) {
-    cursor.expectKeys({"diffuse", "specular", "shininess", "emission", "opacity"});
-    Material material;
-    if (const auto colour = cursor.find("diffuse")) {
-        material.diffuse = readColour(*colour);
-    }
-    if (const auto colour = cursor.find("specular")) {
-        material.specular = readColour(*colour);
-    }
-    if (const auto colour = cursor.find("emission")) {
-        material.emission = readColour(*colour);
-    }
-    if (const auto shininess = cursor.find("shininess")) {
-        material.shininess = float(shininess->number(1, 1024));
-    }
-    if (const auto opacity = cursor.find("opacity")) {
-        material.opacity = float(opacity->number(0, 1));
-        material.alpha_mode = material.opacity < 1 ? AlphaMode::stochastic : AlphaMode::opaque;
-    }
-    return material;
-}
 
 ObjectTracks readTransform(const JsonCursor& cursor) {
     ObjectTracks tracks;
@@ -108,28 +88,27 @@ std::array<float, 3> toFloat(const glm::dvec3& v) {
     return {float(v.x), float(v.y), float(v.z)};
 }
 
-uint32_t SceneFileReader::meshOf(const JsonCursor& obj) {
+/// The OBJ's mesh and materials, loaded once; those of mesh 0 after an error.
+const ObjMaterials& SceneFileReader::objOf(const JsonCursor& obj) {
     const std::filesystem::path file = folder_ / obj.text();
-    if (report_.error) {
-        return 0;
-    }
-    const auto known = mesh_of_file_.find(file);
-    if (known != mesh_of_file_.end()) {
+    const auto [known, added] = obj_of_file_.try_emplace(file);
+    if (!added || report_.error) {
         return known->second;
     }
     Result<ObjModel> model = loadObj(file);
     if (!model) {
         obj.refuse(model.error().message);
-        return 0;
+        return known->second;
     }
+    known->second.first_material = uint32_t(scene_.materials.size());
+    known->second.names = std::move(model->material_names);
     const std::vector<std::string> warnings = std::move(model->warnings);
     scene_.warnings.insert(scene_.warnings.end(), warnings.begin(), warnings.end());
-    const uint32_t mesh = appendModel(scene_, std::move(*model), file.stem().string());
-    mesh_of_file_.emplace(file, mesh);
-    return mesh;
+    known->second.mesh = appendModel(scene_, std::move(*model), file.stem().string());
+    return known->second;
 }
 
-uint32_t SceneFileReader::shapeOf(const JsonCursor& shape, const Material& material) {
+uint32_t SceneFileReader::shapeOf(const JsonCursor& shape) {
     const std::string name = shape.text();
     Result<Mesh> mesh = shapes::named(name);
     if (!mesh) {
@@ -137,7 +116,7 @@ uint32_t SceneFileReader::shapeOf(const JsonCursor& shape, const Material& mater
         return 0;
     }
     mesh->parts[0].material = uint32_t(scene_.materials.size());
-    scene_.materials.push_back(material);
+    scene_.materials.emplace_back();
     scene_.meshes.push_back(std::move(*mesh));
     scene_.mesh_names.push_back(name);
     return uint32_t(scene_.meshes.size() - 1);
@@ -151,25 +130,37 @@ void SceneFileReader::addObject(SceneObject object, uint32_t mesh) {
 }
 
 void SceneFileReader::readObject(const JsonCursor& cursor, size_t number) {
-    cursor.expectKeys({"name", "obj", "shape", "material", "translation", "rotation", "scale"},
-                      {"notes", "comment"});
+    cursor.expectKeys(
+        {"name", "obj", "materials", "shape", "material", "translation", "rotation", "scale"},
+        {"notes", "comment"});
     const auto obj = cursor.find("obj");
     const auto shape = cursor.find("shape");
     const auto material = cursor.find("material");
+    const auto materials = cursor.find("materials");
     if (obj.has_value() == shape.has_value()) {
         cursor.refuse("expected either \"obj\" or \"shape\"");
         return;
     }
     if (obj && material) {
-        material->refuse("expected no material, since an OBJ brings its own");
+        material->refuse("expected \"materials\", since an OBJ brings its own");
+    }
+    if (shape && materials) {
+        materials->refuse("expected \"material\", since a shape has one");
     }
     SceneObject object;
     const auto name = cursor.find("name");
     object.name = name ? name->text() : "object " + std::to_string(number);
     object.tracks = readTransform(cursor);
-    const uint32_t mesh =
-        obj ? meshOf(*obj) : shapeOf(*shape, material ? readMaterial(*material) : Material{});
-    addObject(std::move(object), mesh);
+    const ObjMaterials found = obj ? objOf(*obj) : ObjMaterials{.mesh = shapeOf(*shape)};
+    if (report_.error) {
+        return;
+    }
+    if (materials) {
+        materials_.readOfObj(*materials, found);
+    } else if (material) {
+        materials_.readOfShape(*material, found.mesh);
+    }
+    addObject(std::move(object), found.mesh);
 }
 
 void SceneFileReader::readObjects() {
@@ -182,7 +173,7 @@ void SceneFileReader::readObjects() {
     if (obj) {
         SceneObject object;
         object.name = scene_.name;
-        addObject(std::move(object), meshOf(*obj));
+        addObject(std::move(object), objOf(*obj).mesh);
     }
     if (objects) {
         for (const JsonCursor& cursor : objects->items(1, kMaxObjects - 1)) {
