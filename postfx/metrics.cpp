@@ -87,6 +87,29 @@ double similarity(const Moments& m) {
     return top / bottom;
 }
 
+/// Luma times 1000.
+int64_t wholeLuma(Rgb8 c) {
+    return 299 * c.r + 587 * c.g + 114 * c.b;
+}
+
+/// At most 2 · 255000² a pixel: 2^64 is enough for 140 million pixels.
+uint64_t gradientEnergy(ImageView<const Rgb8> image) {
+    uint64_t sum = 0;
+    const auto add = [&](int64_t difference) { sum += uint64_t(difference * difference); };
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const int64_t here = wholeLuma(image.at(x, y));
+            if (x + 1 < image.width) {
+                add(wholeLuma(image.at(x + 1, y)) - here);
+            }
+            if (y + 1 < image.height) {
+                add(wholeLuma(image.at(x, y + 1)) - here);
+            }
+        }
+    }
+    return sum;
+}
+
 }  // namespace
 
 PixelError& PixelError::operator+=(const PixelError& other) {
@@ -123,6 +146,11 @@ double psnrDb(const PixelError& error) {
     return 10.0 * std::log10(255.0 * 255.0 * double(error.channels) / double(error.squared_sum));
 }
 
+double rmse(const PixelError& error) {
+    return error.channels == 0 ? 0.0
+                               : std::sqrt(double(error.squared_sum) / double(error.channels));
+}
+
 double ssim(ImageView<const Rgb8> a, ImageView<const Rgb8> b) {
     assert(a.width == b.width && a.height == b.height && !a.empty());
     const Taps across = tapsFor(a.width);
@@ -144,6 +172,15 @@ double ssim(ImageView<const Rgb8> a, ImageView<const Rgb8> b) {
         }
     }
     return sum / (double(across.positions) * double(down.positions));
+}
+
+double sharpnessRatio(ImageView<const Rgb8> reference, ImageView<const Rgb8> test) {
+    assert(reference.width == test.width && reference.height == test.height);
+    const uint64_t wanted = gradientEnergy(reference), got = gradientEnergy(test);
+    if (wanted == 0) {
+        return got == 0 ? 1.0 : std::numeric_limits<double>::infinity();
+    }
+    return double(got) / double(wanted);
 }
 
 }  // namespace still
