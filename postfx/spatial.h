@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "postfx/colour_targets.h"
 #include "postfx/taa.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/image.h"
@@ -38,11 +39,6 @@ enum class SpatialEdges : uint8_t {
 struct SpatialSettings {
     SpatialEdges edges = SpatialEdges::geometry;
     SimdTarget simd = bestSimdTarget();
-};
-
-/// Linear light, fx12, planar; written.
-struct ColourTargets {
-    ImageView<uint16_t> red, green, blue;
 };
 
 /// Filters whole frames; keeps its buffer from frame to frame.
