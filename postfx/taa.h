@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/simd.h"
@@ -15,13 +16,20 @@ struct TaaSettings {
     SimdTarget simd = bestSimdTarget();
     /// Samples after which a still pixel is finished (the length of the jitter sequence): 1 … 255.
     int sample_cap = 64;
+    /// Raw frames that pixels in motion are made from, this one included: 1 … kMaxRing.
+    int ring = 8;
 };
+constexpr int kMaxRing = 16;
 
 /// What the frame loop knows and the pixels do not show.
 struct TaaFrame {
     bool reset = false;  ///< first frame, camera cut: there is no history
     /// Light, material or texture changed since the last frame: history colours are only evidence.
     bool shading_changed = false;
+    /// The same for single surfaces: one bit per surface number; empty = none.
+    std::span<const uint64_t> changed_surfaces{};
+    /// Where this frame's samples lie, from the pixels' centres, −128 … 127.
+    int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
 };
 
 /// Linear light, fx12, planar.
