@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "engine/frame_loop.h"
 #include "engine/shapes.h"
 #include "engine/timeline.h"
 
@@ -165,4 +166,26 @@ TEST_CASE("materials: only frames whose offset differs mark their surfaces", "[u
     // A whole repeat is the same picture.
     scene.material_tracks[0].offset.keys = {{2, {0, 0}}, {3, {1, 0}}};
     CHECK(stateAt(scene, 3).changed_surfaces.empty());
+}
+
+TEST_CASE("materials: the frame loop draws those of the frame, in any order", "[unit][timeline]") {
+    Scene scene;
+    scene.meshes.push_back(shapes::plane(1, 1, 1, 1, 1));
+    scene.mesh_names = {"plane"};
+    scene.materials.resize(2);
+    scene.materials[0].diffuse = {0.25f, 0.25f, 0.25f};
+    scene.materials[1].diffuse = {0.75f, 0.75f, 0.75f};
+    scene.material_tracks = {{.material = 0, .offset = {}, .swaps = {{2, 1}, {3, 0}}}};
+    scene.objects.resize(1);
+    scene.lights.ambient = {1, 1, 1};
+    scene.camera.eye.keys = {{0, {0, 1, 0}}};
+    scene.camera.up.keys = {{0, {0, 0, -1}}};
+    Workers workers(1, Schedule::serial);
+    FrameLoop loop(scene,
+                   {.width = 16, .height = 16, .anti_aliasing = AntiAliasing::none, .subframes = 1},
+                   workers);
+    for (int frame : {0, 1, 2, 3, 2, 0}) {
+        CAPTURE(frame);
+        CHECK(loop.render(frame).linear.red.at(8, 8) == (frame == 2 ? 3072 : 1024));
+    }
 }

@@ -255,3 +255,23 @@ TEST_CASE("texture: a thin fence does not vanish in its mips", "[unit][engine]")
               Approx(share).margin(0.05));
     }
 }
+
+TEST_CASE("texture: heights are luminances, whatever the image's alpha", "[texture]") {
+    for (const Size& size : kSizes) {
+        const Image<Rgba8> image = randomImage(size, 77);
+        Image<Rgba8> grey(size.first, size.second);
+        for (int y = 0; y < size.second; ++y) {
+            for (int x = 0; x < size.first; ++x) {
+                const uint8_t level = luminance(image.at(x, y));
+                const Rgba8& p = image.at(x, y);
+                CHECK(std::abs(level - (0.2126 * p.r + 0.7152 * p.g + 0.0722 * p.b)) < 1.5);
+                grey.at(x, y).a = level;
+            }
+        }
+        const AlphaTexture heights = makeHeightTexture(image.view(), Wrap::clamp);
+        CHECK(heights.wrap == Wrap::clamp);
+        CHECK(heights.texels == makeAlphaTexture(constView(grey), Wrap::clamp, false).texels);
+    }
+    CHECK(luminance({255, 255, 255, 0}) == 255);
+    CHECK(luminance({128, 128, 128, 0}) == 128);
+}
