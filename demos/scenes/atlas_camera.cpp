@@ -31,6 +31,26 @@ void addPickets(Scene& scene, double half) {
     addObject(scene, "pickets", out.take());
 }
 
+/// A rim and spokes of 0.5 … 1.2 pixels at z = 0, around the z axis.
+Mesh wheelMesh(uint32_t material) {
+    constexpr double kRadius = 2.2;
+    constexpr int kSpokes = 36;
+    MeshBuilder out(material);
+    std::vector<dvec3> rim;
+    for (int i = 0; i <= 72; ++i) {
+        const double turns = i % 72 / 72.0;
+        rim.push_back(dvec3{det::cosTurns(turns), det::sinTurns(turns), 0} * kRadius);
+    }
+    addTube(out, rim, 0.06, 6);
+    for (int i = 0; i < kSpokes; ++i) {
+        const double turns = double(i) / kSpokes, width = (0.5 + 0.7 * (i % 4) / 3) * kPixel;
+        const dvec3 outward{det::cosTurns(turns), det::sinTurns(turns), 0};
+        const dvec3 spoke[] = {outward * 0.3, outward * kRadius};
+        addTube(out, spoke, width / 2, 5);
+    }
+    return out.take();
+}
+
 /// Fixed camera at the courtyard's entrance; frames as in its own loop.
 constexpr dvec3 kCourtyardEye{-2.0, 1.75, 11.5}, kCourtyardTarget{0.8, 2.62, -2.0};
 
@@ -55,14 +75,19 @@ Scene makeRotate() {
     MeshBuilder cube(addMaterial(scene, {.diffuse = {1, 0.9f, 0.7f}, .colour_texture = checks}));
     cube.append(shapes::box(1.25f, 1.25f, 1.25f), dmat4{1.0});
     SceneObject& turning = addObject(scene, "cube", cube.take());
-    turning.tracks.translation.keys = {{0, {-3.6, 0, 0}}};
+    turning.tracks.translation.keys = {{0, {-5.2, 0.2, 0}}};
     turning.tracks.rotation_axis = unit({1, 2, 0.5});
     turning.tracks.rotation_deg.keys = {{0, 10}, {kFrames, 10 + 3.0 * kFrames}};
+    const uint32_t steel = addMaterial(scene, {.diffuse = {0.8f, 0.82f, 0.85f}});
+    SceneObject& wheel = addObject(scene, "wheel", wheelMesh(steel));
+    wheel.tracks.translation.keys = {{0, {-0.6, -1.2, 0}}};
+    wheel.tracks.rotation_axis = {0, 0, 1};
+    wheel.tracks.rotation_deg.keys = {{0, 0}, {kFrames, 3.0 * kFrames}};
     MeshBuilder knot(addMaterial(
         scene, {.diffuse = {0.55f, 0.3f, 0.06f}, .specular = {2, 1.8f, 1.4f}, .shininess = 300}));
     addTorusKnot(knot, {.segments = 128, .sides = 12});
     SceneObject& shiny = addObject(scene, "knot", knot.take());
-    shiny.tracks.translation.keys = {{0, {3.4, 0, 0}}};
+    shiny.tracks.translation.keys = {{0, {4.9, 0, 0}}};
     shiny.tracks.scale.keys = {{0, dvec3{1.7}}};
     shiny.tracks.rotation_axis = unit({1, 0.4, 0.3});
     shiny.tracks.rotation_deg.keys = {{0, 60}, {kFrames, 60 + 3.0 * kFrames}};
@@ -71,6 +96,7 @@ Scene makeRotate() {
 
 Scene makeRoll() {
     Scene scene = gallery("atlas-roll", 14, 18, 122);
+    addPickets(scene, 14);
     setTrack<dvec3>(scene.camera.up, [](int frame) {
         const double turns = frame / 360.0;
         return dvec3{det::sinTurns(turns), det::cosTurns(turns), 0};
@@ -80,6 +106,7 @@ Scene makeRoll() {
 
 Scene makeZoom() {
     Scene scene = gallery("atlas-zoom", 11, 14, 124);
+    addPickets(scene, 11);
     scene.camera.fov_y_deg.keys = {{0, kFovY_deg}, {kFrames, 20}};
     return scene;
 }

@@ -4,6 +4,7 @@
 #include "demos/scenes/atlas_stage.h"
 #include "demos/scenes/noise.h"
 #include "demos/scenes/paint.h"
+#include "demos/scenes/solids.h"
 #include "engine/shapes.h"
 
 namespace still::scenes::atlas {
@@ -31,6 +32,18 @@ Scene room(const char* name) {
         ball.append(shapes::sphere(32, 16), placed({-4.0 + 4.0 * i, -2.4, 0.2}, dvec3{1.6}));
         addObject(scene, "sphere " + std::to_string(i), ball.take());
     }
+    const int32_t link = addTexture(scene, paintChainLink(4, 0.14, 128));
+    MeshBuilder fence(addMaterial(
+        scene,
+        {.diffuse = {0.75f, 0.77f, 0.8f}, .alpha_mode = AlphaMode::test, .alpha_texture = link}));
+    fence.rectangle({-8, -0.2, -1.5}, {16, 0, 0}, {0, 2.4, 0}, 2.4);
+    addObject(scene, "chain link", fence.take());
+    MeshBuilder wires(addMaterial(scene, {.diffuse = {0.9f, 0.85f, 0.8f}}));
+    for (int i = 0; i < 6; ++i) {
+        addCable(wires, {-9, 2.2 + 0.3 * i, -1}, {9, 3.0 + 0.35 * i, -1}, 0.4,
+                 (0.2 + 0.1 * i) * kPixel, 12, 5);
+    }
+    addObject(scene, "wires", wires.take());
     scene.lights = {};
     scene.lights.ambient = {0.10f, 0.10f, 0.13f};
     scene.lights.points = {{{-1.5f, 2.2f, 2.5f}, {14.0f, 10.0f, 5.0f}}};

@@ -34,7 +34,7 @@ Scene makeDitherStill();     ///< ordered-dither alpha, about one texel per pixe
 Scene makeDitherPan();       ///< the same under a camera at 0.7 px/frame
 
 // atlas_camera.cpp
-Scene makeRotate();       ///< turning cube and knot, corners at up to 2.9 px/frame
+Scene makeRotate();       ///< cube, wheel and knot turn, corners at up to 2.9 px/frame
 Scene makeRoll();         ///< camera rolls by 1°/frame: 2.8 px/frame at the left and right border
 Scene makeZoom();         ///< field of view closes: about 2.2 px/frame at the left and right
 Scene makeFastPan();      ///< 60 px/frame
