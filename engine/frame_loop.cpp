@@ -7,6 +7,8 @@
 #include <cassert>
 
 #include "engine/jitter.h"
+#include "postfx/laboratory.h"
+#include "postfx/spatial.h"
 
 namespace still {
 namespace {
@@ -63,12 +65,14 @@ struct FrameLoop::State {
     FrameSettings settings;
     Workers& workers;
     Rasterizer rasterizer;
-    Taa taa;
+    Taa taa;                ///< Method::gather
+    Laboratory laboratory;  ///< Method::recursive
+    SpatialFilter spatial;
     GBuffer gbuffer;
     OutputTable table;
     Image<Rgb8> output;
     ColourSums sums;
-    ColourImages mean;
+    ColourImages filtered;  ///< mean of ssaa samples, or after the spatial filter
     StageTimes times;
     int resolved_frame = kNoFrame;  ///< the frame that the TAA history ends with
     int resize_frame = 0;           ///< the first frame of the present size
@@ -87,15 +91,21 @@ struct FrameLoop::State {
     }
 
     bool temporal() const { return settings.anti_aliasing == AntiAliasing::taa; }
+    bool gathers() const { return settings.policy.method == Method::gather; }
+    int ssaaSamples() const;
     int historyStart(int frame) const;
     RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
-    void resolve(const FrameState& frame);
+    void resolve(const FrameState& frame, SampleOffset offset);
     void resolveFrame(int frame);
     void resolveHistory(int frame);
-    void averageSamples(int frame);
+    ColourTargets resizeFiltered();
+    void averageSamples(const FrameState& frame);
+    void filterSample();
+    void renderAlone(int frame);
     ColourPlanes colour() const;
+    FrameResult result() const;
 };
 
 /// The frame whose history is empty and on which `frame` builds.
@@ -110,11 +120,10 @@ RasterSettings FrameLoop::State::rasterSettings() const {
         .simd = settings.simd, .shading = settings.shading, .planes = settings.planes};
     if (temporal()) {
         const TaaPolicy& policy = settings.policy;
-        const bool gathers = policy.method == Method::gather;
         raster.planes.motion = true;
-        raster.planes.normal |= gathers || policy.normal_reject_q15 > 0;
+        raster.planes.normal |= gathers() || policy.normal_reject_q15 > 0;
         raster.mip_bias_fx8 = policy.mip_bias_fx8;
-        raster.camera_motion_only = !gathers && policy.motion == MotionSource::camera;
+        raster.camera_motion_only = !gathers() && policy.motion == MotionSource::camera;
     }
     return raster;
 }
@@ -163,7 +172,13 @@ SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample
 }
 
 /// Takes the sample that was just rasterized into the history.
-void FrameLoop::State::resolve(const FrameState& frame) {
+void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
+    if (!gathers()) {
+        const LaboratoryFrame evidence{
+            .reset = frame.cut, .jitter_x_fx8 = offset.x_fx8, .jitter_y_fx8 = offset.y_fx8};
+        laboratory.resolve(gbuffer, evidence, settings.policy, settings.simd, workers);
+        return;
+    }
     const TaaFrame evidence{.reset = frame.cut, .shading_changed = frame.lighting_changed};
     const TaaSettings taa_settings{.simd = settings.simd,
                                    .sample_cap = int(jitterPeriod(settings.policy.jitter))};
@@ -181,7 +196,7 @@ void FrameLoop::State::resolveFrame(int frame) {
         const uint32_t sample = uint32_t(frame - start) * subframes + i;
         const SampleOffset offset = offsetOf(state, sample);
         rasterizeSample(state, offset, sample);
-        timed(times.taa_ms, [&] { resolve(state); });
+        timed(times.taa_ms, [&] { resolve(state, offset); });
         freeze(state);
     }
     resolved_frame = frame;
@@ -196,44 +211,87 @@ void FrameLoop::State::resolveHistory(int frame) {
     }
 }
 
-void FrameLoop::State::averageSamples(int frame) {
-    const FrameState state =
-        frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
-    const bool single = settings.anti_aliasing == AntiAliasing::none;
-    const uint32_t count = single ? 1 : uint32_t(settings.ssaa_samples);
-    if (count == 1) {
-        rasterizeSample(state, {}, single ? uint32_t(frame - historyStart(frame)) : 0);
-        return;
+/// Samples that are averaged; 1 when there is nothing to average.
+int FrameLoop::State::ssaaSamples() const {
+    return settings.anti_aliasing == AntiAliasing::ssaa ? settings.ssaa_samples : 1;
+}
+
+ColourTargets FrameLoop::State::resizeFiltered() {
+    for (Image<uint16_t>* plane : {&filtered.red, &filtered.green, &filtered.blue}) {
+        plane->resize(settings.width, settings.height);
     }
-    const auto resize = [&](auto& images) {
-        images.red.resize(settings.width, settings.height);
-        images.green.resize(settings.width, settings.height);
-        images.blue.resize(settings.width, settings.height);
-    };
-    resize(sums);
-    resize(mean);
+    return {filtered.red.view(), filtered.green.view(), filtered.blue.view()};
+}
+
+void FrameLoop::State::averageSamples(const FrameState& frame) {
+    const uint32_t count = uint32_t(ssaaSamples());
+    for (Image<uint32_t>* plane : {&sums.red, &sums.green, &sums.blue}) {
+        plane->resize(settings.width, settings.height);
+    }
     for (uint32_t i = 0; i < count; ++i) {
-        rasterizeSample(state, ssaaSample(i, count), i);
+        rasterizeSample(frame, ssaaSample(i, count), i);
         timed(times.taa_ms, [&] {
             addPlane(gbuffer.red.view(), i == 0, sums.red.view(), workers);
             addPlane(gbuffer.green.view(), i == 0, sums.green.view(), workers);
             addPlane(gbuffer.blue.view(), i == 0, sums.blue.view(), workers);
         });
     }
+    const ColourTargets mean = resizeFiltered();
     timed(times.taa_ms, [&] {
-        averagePlane(std::as_const(sums.red).view(), count, mean.red.view(), workers);
-        averagePlane(std::as_const(sums.green).view(), count, mean.green.view(), workers);
-        averagePlane(std::as_const(sums.blue).view(), count, mean.blue.view(), workers);
+        averagePlane(std::as_const(sums.red).view(), count, mean.red, workers);
+        averagePlane(std::as_const(sums.green).view(), count, mean.green, workers);
+        averagePlane(std::as_const(sums.blue).view(), count, mean.blue, workers);
     });
+}
+
+void FrameLoop::State::filterSample() {
+    const ColourTargets targets = resizeFiltered();
+    timed(times.taa_ms, [&] {
+        spatial.run(spatialInput(gbuffer, 0, 0),
+                    {.edges = SpatialEdges::colour, .simd = settings.simd}, targets, workers);
+    });
+}
+
+/// A frame that depends on no other.
+void FrameLoop::State::renderAlone(int frame) {
+    const FrameState state =
+        frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
+    if (ssaaSamples() > 1) {
+        averageSamples(state);
+        return;
+    }
+    const bool reference = settings.anti_aliasing == AntiAliasing::ssaa;
+    rasterizeSample(state, {}, reference ? 0 : uint32_t(frame - historyStart(frame)));
+    if (settings.anti_aliasing == AntiAliasing::fxaa) {
+        filterSample();
+    }
 }
 
 ColourPlanes FrameLoop::State::colour() const {
     if (temporal()) {
-        return taa.colour();
+        return gathers() ? taa.colour() : laboratory.colour();
     }
-    const bool averaged = settings.anti_aliasing == AntiAliasing::ssaa && settings.ssaa_samples > 1;
-    return averaged ? ColourPlanes{mean.red.view(), mean.green.view(), mean.blue.view()}
-                    : planesOf(gbuffer);
+    if (settings.anti_aliasing == AntiAliasing::fxaa || ssaaSamples() > 1) {
+        return {filtered.red.view(), filtered.green.view(), filtered.blue.view()};
+    }
+    return planesOf(gbuffer);
+}
+
+FrameResult FrameLoop::State::result() const {
+    FrameResult result;
+    result.output = output.view();
+    result.linear = colour();
+    result.gbuffer = &gbuffer;
+    result.times = times;
+    if (temporal() && gathers()) {
+        result.sample_count = taa.sampleCount();
+        result.confidence = result.sample_count;
+        result.confidence_full = int(jitterPeriod(settings.policy.jitter));
+        result.converged = taa.converged();
+    } else if (temporal()) {
+        result.confidence = laboratory.confidence();
+    }
+    return result;
 }
 
 FrameLoop::FrameLoop(const Scene& scene, const FrameSettings& settings, Workers& workers)
@@ -257,24 +315,13 @@ FrameResult FrameLoop::render(int frame) {
     if (state.temporal()) {
         state.resolveHistory(frame);
     } else {
-        state.averageSamples(frame);
+        state.renderAlone(frame);
     }
     state.output.resize(state.settings.width, state.settings.height);
     state.timed(state.times.output_ms, [&] {
         encodeOutput(state.colour(), state.table, state.output.view(), state.workers);
     });
-    FrameResult result;
-    result.output = std::as_const(state.output).view();
-    result.linear = state.colour();
-    result.gbuffer = &state.gbuffer;
-    result.times = state.times;
-    if (state.temporal()) {
-        result.sample_count = state.taa.sampleCount();
-        result.confidence = result.sample_count;
-        result.confidence_full = int(jitterPeriod(state.settings.policy.jitter));
-        result.converged = state.taa.converged();
-    }
-    return result;
+    return state.result();
 }
 
 void FrameLoop::resize(int width, int height) {
