@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/jitter.h"
 #include "rasterizer/fixed.h"
 
 namespace still::command {
@@ -96,9 +95,9 @@ Image<Rgb8> idPicture(const GBuffer& g) {
     });
 }
 
-Image<Rgb8> confidencePicture(ImageView<const uint8_t> samples) {
-    return paintEach(samples.width, samples.height, [&](int x, int y) {
-        const uint8_t grey = uint8_t(samples.at(x, y) * 255u / kTaaPeriod);
+Image<Rgb8> confidencePicture(ImageView<const uint8_t> confidence, int full) {
+    return paintEach(confidence.width, confidence.height, [&](int x, int y) {
+        const uint8_t grey = uint8_t(confidence.at(x, y) * 255 / full);
         return Rgb8{grey, grey, grey};
     });
 }
@@ -119,7 +118,7 @@ Image<Rgb8> pictureOf(DumpPlane plane, const FrameResult& frame, const OutputTab
         case DumpPlane::id:
             return idPicture(gbuffer);
         case DumpPlane::confidence:
-            return confidencePicture(frame.sample_count);
+            return confidencePicture(frame.confidence, frame.confidence_full);
     }
     return {};
 }

@@ -11,7 +11,7 @@ namespace still::command {
 /// normal      x, y, z in −1 … 1 as red, green, blue; nothing is black
 /// motion      red x, green y: 128 is rest, 8 steps a pixel, at most 16 pixels; no history is blue
 /// id          a colour of its own for each surface; nothing is black
-/// confidence  TAA's samples in the pixel, white when all are in
+/// confidence  what TAA knows of the pixel (samples, or trust in history), white when that is all
 Image<Rgb8> pictureOf(DumpPlane plane, const FrameResult& frame, const OutputTable& table);
 
 }  // namespace still::command

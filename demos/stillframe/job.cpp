@@ -36,8 +36,12 @@ Outcome<void> checkCombination(const Job& job) {
     if (!job.dump.empty() && (to_stdout || job.sink == SinkKind::none)) {
         return usageError("--dump: expected an --output file, whose name the planes' names follow");
     }
+    const bool temporal = job.settings.anti_aliasing == AntiAliasing::taa;
+    if (!temporal && !options.taa.empty()) {
+        return usageError("--taa: is for --anti-aliasing taa");
+    }
     const bool confidence = std::count(job.dump.begin(), job.dump.end(), DumpPlane::confidence) > 0;
-    if (confidence && job.settings.anti_aliasing != AntiAliasing::taa) {
+    if (confidence && !temporal) {
         return usageError("--dump: confidence exists with --anti-aliasing taa only");
     }
     if (!std::isfinite(options.orbit_deg)) {
@@ -62,9 +66,12 @@ Outcome<void> settleOptions(Job& job) {
         .and_then([&] { return store(parseDump(options.dump), job.dump); })
         .and_then([&] { return store(parseSimd(options.simd), settings.simd); })
         .and_then([&] { return store(parseAntiAliasing(options.anti_aliasing), choice); })
-        .map([&] {
+        .and_then([&] { return parseTaaSettings(options.taa, choice.policy); })
+        .map([&](const TaaPolicy& policy) {
             settings.anti_aliasing = choice.mode;
             settings.ssaa_samples = choice.ssaa_samples;
+            settings.policy = policy;
+            job.preset = choice.preset;
         })
         .and_then([&] { return checkCombination(job); });
 }

@@ -8,6 +8,7 @@
 
 #include "demos/stillframe/compare.h"
 #include "demos/stillframe/render.h"
+#include "demos/stillframe/report.h"
 
 namespace still::command {
 namespace {
@@ -38,9 +39,13 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
         ->type_name("WIDTHxHEIGHT");
     render
         .add_option("--anti-aliasing,--aa", o.anti_aliasing,
-                    "none; taa: temporal, the default; ssaa:N: N samples a pixel,\n"
-                    "the reference")
+                    "none; taa: temporal, the default, which is taa:still;\n"
+                    "taa:PRESET: another method, see stillframe presets;\n"
+                    "fxaa: edges smoothed in each frame alone;\n"
+                    "ssaa:N: N samples a pixel, the reference")
         ->type_name("MODE");
+    render.add_option("--taa", o.taa, "Settings of taa, over those of the preset; listed below")
+        ->type_name("KEY=VALUE,...");
     render
         .add_option("--samples", o.samples,
                     "Samples of a finished picture, which is what one frame of a\n"
@@ -101,6 +106,7 @@ CLI::App* addRender(CLI::App& app, RenderOptions& o) {
     addPictureOptions(*render, o);
     addTimeOptions(*render, o);
     addMachineOptions(*render, o);
+    render->footer("Settings of --taa:\n" + taaSettingsLines());
     return render;
 }
 
@@ -120,6 +126,13 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& o) {
     return compare;
 }
 
+CLI::App* addPresets(CLI::App& app, bool& json) {
+    CLI::App* presets =
+        app.add_subcommand("presets", "List the presets of temporal anti-aliasing, its settings");
+    presets->add_flag("--json", json, "As one JSON object");
+    return presets;
+}
+
 /// One line, whatever the file's name is made of.
 int report(const Failure& failure) {
     std::string line = failure.message;
@@ -137,8 +150,10 @@ int run(int argc, char** argv) {
     app.footer(kExitCodes);
     RenderOptions render_options;
     CompareOptions compare_options;
+    bool presets_json = false;
     const CLI::App* render_command = addRender(app, render_options);
     addCompare(app, compare_options);
+    const CLI::App* presets_command = addPresets(app, presets_json);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -146,6 +161,10 @@ int run(int argc, char** argv) {
             return app.exit(error);  // --help or --version
         }
         return report({ExitCode::usage, error.what() + std::string("; see stillframe --help")});
+    }
+    if (presets_command->parsed()) {
+        const auto printed = print(presets_json ? presetsJson() : presetsLines());
+        return printed ? int(ExitCode::ok) : report(printed.error());
     }
     Interruption interruption;
     const Outcome<ExitCode> outcome =

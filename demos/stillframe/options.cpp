@@ -1,5 +1,6 @@
 #include "demos/stillframe/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
@@ -17,6 +18,43 @@ std::optional<int> wholeNumber(std::string_view text) {
         return std::nullopt;
     }
     return value;
+}
+
+/// "a, b, c" of what `nameOf` makes of the elements.
+template <class Range, class NameOf>
+std::string listed(const Range& range, NameOf&& nameOf) {
+    std::string list;
+    for (const auto& element : range) {
+        list += (list.empty() ? "" : ", ") + std::string(nameOf(element));
+    }
+    return list;
+}
+
+Outcome<AntiAliasingChoice> presetChoice(const std::string& name) {
+    if (const TaaPreset* preset = findPreset(name)) {
+        return AntiAliasingChoice{AntiAliasing::taa, 1, name, preset->policy};
+    }
+    return usageError("--anti-aliasing: taa:" + name + ": the presets are " +
+                      listed(taaPresets(), [](const TaaPreset& preset) { return preset.name; }));
+}
+
+/// Applies one "key=value".
+Outcome<void> applyTaaSetting(std::string_view setting, TaaPolicy& policy) {
+    const size_t equals = setting.find('=');
+    const std::string_view name = setting.substr(0, equals);
+    for (const TaaPolicyKey& key : taaPolicyKeys()) {
+        if (key.name != name) {
+            continue;
+        }
+        if (equals != std::string_view::npos &&
+            setPolicyKey(policy, name, setting.substr(equals + 1))) {
+            return {};
+        }
+        return usageError("--taa: " + std::string(setting) + ": expected " + std::string(name) +
+                          "= and one of " + std::string(key.values));
+    }
+    return usageError("--taa: " + std::string(setting) + ": expected KEY=VALUE with a key of " +
+                      listed(taaPolicyKeys(), [](const TaaPolicyKey& key) { return key.name; }));
 }
 
 constexpr DumpPlane kDumpPlanes[] = {DumpPlane::color,  DumpPlane::depth, DumpPlane::normal,
@@ -48,22 +86,40 @@ Outcome<Size> parseResolution(const std::string& text) {
 }
 
 Outcome<AntiAliasingChoice> parseAntiAliasing(const std::string& text) {
-    constexpr std::string_view kSsaa = "ssaa:";
+    constexpr std::string_view kSsaa = "ssaa:", kTaa = "taa:";
     if (text == "none") {
-        return AntiAliasingChoice{AntiAliasing::none, 1};
+        return AntiAliasingChoice{AntiAliasing::none, 1, {}, {}};
+    }
+    if (text == "fxaa") {
+        return AntiAliasingChoice{AntiAliasing::fxaa, 1, {}, {}};
     }
     if (text == "taa") {
-        return AntiAliasingChoice{AntiAliasing::taa, 1};
+        return presetChoice("still");
+    }
+    if (text.starts_with(kTaa)) {
+        return presetChoice(text.substr(kTaa.size()));
     }
     if (text.starts_with(kSsaa)) {
         const auto samples = wholeNumber(std::string_view(text).substr(kSsaa.size()));
         if (samples && *samples >= 1 && *samples <= kMaxSsaaSamples) {
-            return AntiAliasingChoice{AntiAliasing::ssaa, *samples};
+            return AntiAliasingChoice{AntiAliasing::ssaa, *samples, {}, {}};
         }
     }
     return usageError("--anti-aliasing: " + text +
-                      ": expected none, taa or ssaa:N with N from 1 to " +
+                      ": expected none, taa, taa:PRESET, fxaa or ssaa:N with N from 1 to " +
                       std::to_string(kMaxSsaaSamples));
+}
+
+Outcome<TaaPolicy> parseTaaSettings(const std::string& text, TaaPolicy policy) {
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find(',', begin), text.size());
+        const auto setting = std::string_view(text).substr(begin, end - begin);
+        if (auto applied = applyTaaSetting(setting, policy); !applied) {
+            return tl::make_unexpected(applied.error());
+        }
+        begin = end + 1;
+    }
+    return policy;
 }
 
 std::string dumpName(DumpPlane plane) {
@@ -103,14 +159,14 @@ Outcome<SimdTarget> parseSimd(const std::string& text) {
     if (text.empty()) {
         return bestSimdTarget();
     }
-    std::string known;
-    for (SimdTarget target : availableSimdTargets()) {
+    const auto targets = availableSimdTargets();
+    for (SimdTarget target : targets) {
         if (name(target) == text) {
             return target;
         }
-        known += (known.empty() ? "" : ", ") + std::string(name(target));
     }
-    return usageError("--simd: " + text + ": this machine and build have " + known);
+    return usageError("--simd: " + text + ": this machine and build have " +
+                      listed(targets, [](SimdTarget target) { return name(target); }));
 }
 
 }  // namespace still::command

@@ -24,6 +24,7 @@ struct RenderOptions {
     std::string view;
     double orbit_deg = 0;
     std::string anti_aliasing = "taa";
+    std::string taa;             ///< comma-separated settings over the preset's
     std::optional<int> samples;  ///< of a finished picture; empty: 64
     std::string dump;            ///< comma-separated planes
     int threads = 0;             ///< 0: all cores
@@ -48,9 +49,14 @@ Outcome<Size> parseResolution(const std::string& text);
 struct AntiAliasingChoice {
     AntiAliasing mode = AntiAliasing::taa;
     int ssaa_samples = 1;
+    std::string preset;  ///< with AntiAliasing::taa
+    TaaPolicy policy;    ///< the preset's
 };
-/// "none", "taa" or "ssaa:N" with N = 1 … 65536.
+/// "none", "taa", "taa:PRESET", "fxaa" or "ssaa:N" with N = 1 … 65536.
 Outcome<AntiAliasingChoice> parseAntiAliasing(const std::string& text);
+
+/// `policy` with the settings "key=value,key=value"; empty text changes nothing.
+Outcome<TaaPolicy> parseTaaSettings(const std::string& text, TaaPolicy policy);
 
 /// Planes that --dump can write.
 enum class DumpPlane { color, depth, normal, motion, id, confidence };

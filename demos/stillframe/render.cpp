@@ -33,6 +33,9 @@ class Run {
         report_.height = job.settings.height;
         report_.threads = job.threads;
         report_.simd = job.settings.simd;
+        report_.anti_aliasing = job.options.anti_aliasing;
+        report_.preset = job.preset;
+        report_.taa = job.options.taa;
         report_.with_hashes = job.options.hash;
     }
 

@@ -84,6 +84,13 @@ std::string formatted(const char* format, Values... values) {
     return line;
 }
 
+std::string entryLine(std::string_view name, std::string_view what) {
+    constexpr size_t kColumn = 17;
+    std::string line = "  " + std::string(name);
+    line.append(std::max(line.size(), kColumn) + 1 - line.size(), ' ');
+    return line + std::string(what) + "\n";
+}
+
 std::string errorLine(const PixelError& error, double ssim) {
     if (error.identical()) {
         return "identical\n";
@@ -104,6 +111,11 @@ std::string renderJson(const RenderReport& report) {
     json["frames"] = frames.size();
     json["threads"] = report.threads;
     json["simd"] = name(report.simd);
+    json["anti_aliasing"] = report.anti_aliasing;
+    if (!report.preset.empty()) {
+        json["preset"] = report.preset;
+        json["taa"] = report.taa;
+    }
     json["stages"] = {{"transform_bin", stageStatistics(frames, &StageTimes::transform_bin_ms)},
                       {"raster", stageStatistics(frames, &StageTimes::raster_ms)},
                       {"taa", stageStatistics(frames, &StageTimes::taa_ms)},
@@ -175,6 +187,43 @@ std::string compareLines(const CompareReport& report) {
         lines += report.numbered ? formatted("frame %d  ", d.frame) : "";
         lines += formatted("x %d y %d: %d %d %d, %d %d %d\n", d.x, d.y, d.a.r, d.a.g, d.a.b, d.b.r,
                            d.b.g, d.b.b);
+    }
+    return lines;
+}
+
+std::string presetsJson() {
+    Json json;
+    json["presets"] = Json::array();
+    for (const TaaPreset& preset : taaPresets()) {
+        json["presets"].push_back({{"name", preset.name}, {"about", preset.about}});
+    }
+    json["settings"] = Json::array();
+    for (const TaaPolicyKey& key : taaPolicyKeys()) {
+        json["settings"].push_back({{"name", key.name}, {"values", key.values}});
+    }
+    return text(json);
+}
+
+std::string presetsLines() {
+    std::string lines = "Presets, for --anti-aliasing taa:PRESET\n";
+    for (const TaaPreset& preset : taaPresets()) {
+        lines += entryLine(preset.name, preset.about);
+    }
+    return lines + "\nSettings, for --taa KEY=VALUE,KEY=VALUE,...\n" + taaSettingsLines();
+}
+
+std::string taaSettingsLines() {
+    constexpr size_t kWidth = 58;
+    std::string lines;
+    for (const TaaPolicyKey& key : taaPolicyKeys()) {
+        std::string_view name = key.name, values = key.values;
+        while (values.size() > kWidth) {
+            const size_t end = values.rfind('|', kWidth) + 1;
+            lines += entryLine(name, values.substr(0, end));
+            name = {};
+            values.remove_prefix(end);
+        }
+        lines += entryLine(name, values);
     }
     return lines;
 }

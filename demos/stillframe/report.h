@@ -19,6 +19,9 @@ struct RenderReport {
     int width = 0, height = 0;
     int threads = 1;
     SimdTarget simd = SimdTarget::scalar;
+    std::string anti_aliasing;  ///< as typed
+    std::string preset;         ///< of TAA; empty without
+    std::string taa;            ///< settings over the preset's, as typed
     struct Frame {
         int frame = 0;
         StageTimes times;
@@ -56,6 +59,12 @@ struct CompareReport {
 
 std::string compareJson(const CompareReport& report);
 std::string compareLines(const CompareReport& report);
+
+/// The presets of TAA and the settings of --taa.
+std::string presetsJson();
+std::string presetsLines();
+/// The settings of --taa with their values, one a line, indented; long lists are wrapped.
+std::string taaSettingsLines();
 
 /// Writes `text` to standard output, with an error when that fails.
 Outcome<void> print(const std::string& text);
