@@ -90,6 +90,9 @@ constexpr bool needsMotion(const TaaPolicy& p) {
     return p.velocity_reject_fx8 > 0;
 }
 
+/// Most tests that can fail: depth, normal, surface, motion, luminance.
+constexpr int kTests = 5;
+
 /// Resolves one tile and writes history and the shown planes.
 using TileKernel = void (*)(const ResolveJob&, const TileRect&) noexcept;
 

@@ -98,6 +98,13 @@ constexpr bool usesStatistics(const TaaPolicy& p) {
            p.rectification == Rectification::variance_clamp;
 }
 
+/// Towards the box's middle, not channel by channel.
+constexpr bool clips(const TaaPolicy& p) {
+    return p.rectification == Rectification::clip ||
+           p.rectification == Rectification::rounded_clip ||
+           p.rectification == Rectification::variance_clip;
+}
+
 /// Working colour as rectification sees it.
 constexpr Rgb toSpace(const TaaPolicy& p, const Rgb& c) {
     return p.space == ColourSpace::ycocg ? toYcocg(c) : c;

@@ -1,4 +1,56 @@
+// Compiles the laboratory's SIMD kernels once per target and hands out the one for a target and a
+// policy: eight presets and the generic kernel.
+
 #include "postfx/internal/lab_kernels.h"
+#include "postfx/internal/lab_presets.h"
+
+#if STILL_SIMD
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "postfx/internal/lab_simd.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target must come before highway.h.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "postfx/internal/lab_rules.h"
+#include "rasterizer/internal/dispatch.h"
+
+// Each rests on those before. Highway's one-lane target lacks shuffles and is never asked for: the
+// reference kernel stands in.
+#if HWY_TARGET != HWY_SCALAR
+// clang-format off
+#include "postfx/internal/lab_lanes-inl.h"
+#include "postfx/internal/lab_window-inl.h"
+#include "postfx/internal/lab_history-inl.h"
+#include "postfx/internal/lab_resolve-inl.h"
+// clang-format on
+#else
+namespace still::lab::HWY_NAMESPACE {
+TileKernel kernelHere(const TaaPolicy&) {
+    return resolveTileReference;
+}
+}  // namespace still::lab::HWY_NAMESPACE
+#endif
+
+#if HWY_ONCE
+namespace still::lab {
+
+HWY_EXPORT(kernelHere);
+
+TileKernel tileKernel(SimdTarget target, const TaaPolicy& policy) {
+    return target == SimdTarget::scalar
+               ? resolveTileReference
+               : internal::pickKernel(HWY_DISPATCH_TABLE(kernelHere), target)(policy);
+}
+
+}  // namespace still::lab
+#endif
+
+#else
 
 namespace still::lab {
 
@@ -7,3 +59,5 @@ TileKernel tileKernel(SimdTarget, const TaaPolicy&) {
 }
 
 }  // namespace still::lab
+
+#endif

@@ -110,12 +110,6 @@ bool clipTo(const Box& box, Rgb& colour) {
     return true;
 }
 
-bool clips(const TaaPolicy& p) {
-    return p.rectification == Rectification::clip ||
-           p.rectification == Rectification::rounded_clip ||
-           p.rectification == Rectification::variance_clip;
-}
-
 }  // namespace
 
 Window loadWindow(const ResolveJob& job, int x, int y) noexcept {
