@@ -193,12 +193,14 @@ std::vector<uint64_t> changedSurfaces(const Scene& scene, int frame) {
         changed[tracks.material] =
             materialAt(scene, tracks, frame) != materialAt(scene, tracks, frame - 1) ? 1 : 0;
     }
-    std::vector<uint64_t> surfaces;
+    if (std::find(changed.begin(), changed.end(), 1) == changed.end()) {
+        return {};
+    }
+    std::vector<uint64_t> surfaces(surfaceCount(scene) / 64 + 1, 0);
     uint32_t surface = 1;
     for (const SceneObject& object : scene.objects) {
         for (const MeshPart& part : scene.meshes[object.mesh].parts) {
             if (changed[part.material] != 0) {
-                surfaces.resize(std::max(surfaces.size(), size_t(surface / 64 + 1)));
                 surfaces[surface / 64] |= uint64_t{1} << (surface % 64);
             }
             ++surface;

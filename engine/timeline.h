@@ -27,7 +27,7 @@ struct FrameState {
     /// Those of this frame; empty while the scene's own are drawn, see materialsOf().
     std::vector<Material> materials;
     /// Bit s % 64 of word s / 64 is set for each surface s whose material differs from that of the
-    /// frame before; words that are missing are 0. Empty: none differs, or a cut.
+    /// frame before, up to the last surface. Empty: no material differs, or a cut.
     std::vector<uint64_t> changed_surfaces;
     std::optional<std::array<int, 2>> jitter_fx8;  ///< given by a camera file
 };

@@ -115,6 +115,7 @@ TEST_CASE("materials: more than 64 surfaces are marked by number", "[unit][timel
     scene.objects.resize(100);
     scene.material_tracks = {{.material = 1, .offset = {}, .swaps = {{1, 2}}}};
     const FrameState state = stateAt(scene, 1);
+    CHECK(state.changed_surfaces.size() == 4);
     for (uint32_t surface = 0; surface <= 200; ++surface) {
         CAPTURE(surface);
         CHECK(changed(state, surface) == (surface > 0 && surface % 2 == 0));
