@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <string_view>
 #include <thread>
 
-#include "demos/scenes/builtin.h"
+#include "demos/stillframe/scene_source.h"
 #include "engine/jitter.h"
 #include "engine/load.h"
 
 namespace still::command {
 namespace {
-
-constexpr std::string_view kBuiltin = "builtin:";
 
 /// Puts the value of `from` into `to`.
 template <class T>
@@ -76,21 +72,6 @@ Outcome<void> settleOptions(Job& job) {
         .and_then([&] { return checkCombination(job); });
 }
 
-void printWarnings(const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) {
-        std::fprintf(stderr, "stillframe: warning: %s\n", warning.c_str());
-    }
-}
-
-Outcome<Scene> openScene(const std::string& name) {
-    if (!name.starts_with(kBuiltin)) {
-        return fromResult(loadScene(name));
-    }
-    return builtinScene(name.substr(kBuiltin.size())).map_error([](const Error& error) {
-        return Failure{ExitCode::usage, error.message};
-    });
-}
-
 Outcome<void> readCameras(Job& job) {
     if (job.options.cameras.empty()) {
         return {};
@@ -105,16 +86,6 @@ Outcome<void> readFiles(Job& job) {
     return store(openScene(job.options.scene), job.scene)
         .map([&] { printWarnings(job.scene.warnings); })
         .and_then([&] { return readCameras(job); });
-}
-
-/// The loader frames for 16:9 and leaves other shapes to us. An empty scene has no camera keys.
-void frameForAspect(Scene& scene, Size size) {
-    if (scene.automatic_camera && !scene.camera.eye.keys.empty() &&
-        !scene.camera.target.keys.empty()) {
-        const glm::dvec3 direction =
-            scene.camera.eye.keys[0].value - scene.camera.target.keys[0].value;
-        frameScene(scene, direction, double(size.width) / size.height);
-    }
 }
 
 Outcome<int> findView(const Scene& scene, const std::string& name) {

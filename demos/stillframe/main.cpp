@@ -6,6 +6,8 @@
 #include <new>
 #include <string>
 
+#include "demos/stillframe/atlas.h"
+#include "demos/stillframe/chart.h"
 #include "demos/stillframe/compare.h"
 #include "demos/stillframe/render.h"
 #include "demos/stillframe/report.h"
@@ -133,6 +135,75 @@ CLI::App* addPresets(CLI::App& app, bool& json) {
     return presets;
 }
 
+void addSize(CLI::App& command, Size& size, const char* text) {
+    command
+        .add_option_function<std::string>(
+            "--resolution",
+            [&size](const std::string& typed) {
+                const auto parsed = parseResolution(typed);
+                if (!parsed) {
+                    throw CLI::ValidationError(parsed.error().message);
+                }
+                size = *parsed;
+            },
+            text)
+        ->type_name("WIDTHxHEIGHT");
+}
+
+/// What the programs of the laboratory share.
+void addLaboratoryOptions(CLI::App& command, std::string& output, std::string& cache, bool& json) {
+    command
+        .add_option("-o,--output", output, "Folder for what is found, made when it is not there")
+        ->required()
+        ->type_name("DIR");
+    command
+        .add_option("--cache", cache,
+                    "Folder for references, default $XDG_CACHE_HOME/stillframe\n"
+                    "or ~/.cache/stillframe")
+        ->type_name("DIR");
+    command.add_flag("--json", json, "Print the results as one JSON object");
+}
+
+CLI::App* addAtlas(CLI::App& app, AtlasOptions& o) {
+    CLI::App* atlas = app.add_subcommand(
+        "atlas", "Measure ways of anti-aliasing on scenes on which such ways fail");
+    addLaboratoryOptions(*atlas, o.output, o.cache, o.json);
+    atlas->add_option("--scenes", o.scenes, "Cases with commas, default all that are quick")
+        ->type_name("NAMES");
+    atlas
+        ->add_option("--presets", o.presets,
+                     "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa")
+        ->type_name("NAMES");
+    addSize(*atlas, o.resolution, "Default 320x180");
+    return atlas;
+}
+
+CLI::App* addChart(CLI::App& app, ChartOptions& o) {
+    CLI::App* chart = app.add_subcommand(
+        "chart", "Draw milliseconds per frame against error, for all ways of anti-aliasing");
+    chart->add_option("SCENE", o.scenes, "FILE.obj, FILE.json or builtin:NAME; one or several")
+        ->required()
+        ->type_name("");
+    addLaboratoryOptions(*chart, o.output, o.cache, o.json);
+    addSize(*chart, o.resolution, "Default 640x360");
+    chart->add_option("--frames", o.frames, "Of each segment, default 64")
+        ->check(CLI::Range(4, 10000))
+        ->type_name("N");
+    chart
+        ->add_option("--orbit", o.orbit_deg,
+                     "The camera circles its target by so much each frame of the\n"
+                     "moving segment, default 1/3")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->type_name("DEGREES");
+    chart
+        ->add_option("--samples", o.reference_samples,
+                     "Of the moving segment's references, default 256; the still\n"
+                     "one's get four times as many")
+        ->check(CLI::Range(1, 16384))
+        ->type_name("N");
+    return chart;
+}
+
 /// One line, whatever the file's name is made of.
 int report(const Failure& failure) {
     std::string line = failure.message;
@@ -153,6 +224,10 @@ int run(int argc, char** argv) {
     bool presets_json = false;
     const CLI::App* render_command = addRender(app, render_options);
     addCompare(app, compare_options);
+    AtlasOptions atlas_options;
+    const CLI::App* atlas_command = addAtlas(app, atlas_options);
+    ChartOptions chart_options;
+    const CLI::App* chart_command = addChart(app, chart_options);
     const CLI::App* presets_command = addPresets(app, presets_json);
     try {
         app.parse(argc, argv);
@@ -167,10 +242,12 @@ int run(int argc, char** argv) {
         return printed ? int(ExitCode::ok) : report(printed.error());
     }
     Interruption interruption;
+    const auto ok = [] { return ExitCode::ok; };
     const Outcome<ExitCode> outcome =
-        render_command->parsed()
-            ? render(render_options, interruption).map([] { return ExitCode::ok; })
-            : compare(compare_options, interruption);
+        render_command->parsed()  ? render(render_options, interruption).map(ok)
+        : atlas_command->parsed() ? atlas(atlas_options, interruption).map(ok)
+        : chart_command->parsed() ? chart(chart_options, interruption).map(ok)
+                                  : compare(compare_options, interruption);
     return outcome ? int(*outcome) : report(outcome.error());
 }
 

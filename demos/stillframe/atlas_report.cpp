@@ -1,0 +1,151 @@
+// nlohmann/json is included here and in report.cpp, and nowhere else among the programs: it is slow
+// to compile.
+
+#include "demos/stillframe/atlas_report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+namespace still::command {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json orNull(const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+/// Six figures are plenty for people and for tests of thresholds.
+double shortened(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return std::strtod(text, nullptr);
+}
+
+Json measuresJson(const SegmentMeasures& m) {
+    return {{"psnr", m.psnr},
+            {"ssim", m.ssim},
+            {"flip", m.flip},
+            {"flicker", orNull(m.flicker)},
+            {"ghost_area", orNull(m.ghost_area)},
+            {"recovery_frames", orNull(m.recovery_frames)},
+            {"sharpness", orNull(m.sharpness)},
+            {"ms", m.ms}};
+}
+
+Json resultJson(const AtlasResult& result) {
+    Json json{{"scene", result.scene}, {"segment", result.segment}, {"preset", result.preset}};
+    json.update(measuresJson(result.measures));
+    json["frames"] = Json::array();
+    for (const FrameError& frame : result.measures.frames) {
+        json["frames"].push_back({{"frame", frame.frame},
+                                  {"rms", shortened(frame.rms)},
+                                  {"flip", shortened(frame.flip)}});
+    }
+    return json;
+}
+
+std::string base64(const std::string& bytes) {
+    constexpr const char* kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t word = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+        }
+        for (size_t k = 0; k < 4; ++k) {
+            const bool there = i + k <= bytes.size();
+            text += there ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+        }
+    }
+    return text;
+}
+
+Json caseJson(const AtlasCase& atlas_case) {
+    Json json{{"name", atlas_case.name},
+              {"failure", atlas_case.failure},
+              {"measure", atlas_case.measure}};
+    json["event"] = atlas_case.event_frame ? Json(*atlas_case.event_frame) : Json(nullptr);
+    return json;
+}
+
+/// A result as the page wants it: frames as lists of numbers, and the crop.
+Json cellJson(const AtlasResult& result) {
+    const SegmentMeasures& m = result.measures;
+    Json json{{"scene", result.scene}, {"segment", result.segment}, {"preset", result.preset}};
+    const Json measures = measuresJson(m);
+    for (const auto& [key, value] : measures.items()) {
+        json[key] = value.is_null() ? value : Json(shortened(value.get<double>()));
+    }
+    for (const char* key : {"number", "rms", "frame_flip"}) {
+        json[key] = Json::array();
+    }
+    for (const FrameError& frame : m.frames) {
+        json["number"].push_back(frame.frame);
+        json["rms"].push_back(std::round(frame.rms * 100) / 100);
+        json["frame_flip"].push_back(std::round(frame.flip * 10000) / 10000);
+    }
+    json["crop"] = "data:image/png;base64," + base64(m.crop_png);
+    json["crop_at"] = {m.crop_frame, m.crop_x, m.crop_y};
+    return json;
+}
+
+/// A number, or nothing.
+std::string field(const std::optional<double>& value) {
+    char text[40] = "";
+    if (value) {
+        std::snprintf(text, sizeof text, ",%.10g", *value);
+        return text;
+    }
+    return ",";
+}
+
+}  // namespace
+
+std::string atlasJson(const AtlasReport& report) {
+    Json json{{"width", report.width}, {"height", report.height}, {"results", Json::array()}};
+    for (const AtlasResult& result : report.results) {
+        json["results"].push_back(resultJson(result));
+    }
+    return json.dump(1) + "\n";
+}
+
+std::string atlasCsv(const AtlasReport& report) {
+    std::string text =
+        "scene,segment,preset,psnr,ssim,flip,flicker,ghost_area,recovery_frames,sharpness,ms\n";
+    for (const AtlasResult& result : report.results) {
+        const SegmentMeasures& m = result.measures;
+        text += result.scene + "," + result.segment + "," + result.preset;
+        const std::optional<double> values[] = {
+            m.psnr, m.ssim, m.flip, m.flicker, m.ghost_area, m.recovery_frames, m.sharpness, m.ms};
+        for (const std::optional<double>& value : values) {
+            text += field(value);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string atlasPageData(const AtlasReport& report) {
+    Json json{{"width", report.width}, {"height", report.height}};
+    json["modes"] = report.modes;
+    json["cases"] = Json::array();
+    for (const AtlasCase* atlas_case : report.cases) {
+        json["cases"].push_back(caseJson(*atlas_case));
+    }
+    json["results"] = Json::array();
+    for (const AtlasResult& result : report.results) {
+        json["results"].push_back(cellJson(result));
+    }
+    // "</script>" must not appear inside the element.
+    std::string text;
+    for (char c : json.dump()) {
+        text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+    }
+    return text;
+}
+
+}  // namespace still::command

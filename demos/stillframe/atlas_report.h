@@ -1,0 +1,36 @@
+#pragma once
+// What the atlas found, as text for programs.
+
+#include <string>
+#include <vector>
+
+#include "demos/stillframe/cell.h"
+
+namespace still::command {
+
+/// One cell: a row of the results.
+struct AtlasResult {
+    std::string scene, segment, preset;
+    SegmentMeasures measures;
+};
+
+struct AtlasReport {
+    int width = 0, height = 0;
+    std::vector<const AtlasCase*> cases;
+    std::vector<std::string> modes;
+    std::vector<AtlasResult> results;  ///< by case, segment, mode
+};
+
+/// {"width", "height", "results": [{"scene", "segment", "preset", "psnr", "ssim", "flip",
+/// "flicker", "ghost_area", "recovery_frames", "sharpness", "ms", "frames": [{"frame", "rms",
+/// "flip"} …]} …]}; null where a measure does not apply.
+std::string atlasJson(const AtlasReport& report);
+
+/// The same without frames; an empty field is null.
+std::string atlasCsv(const AtlasReport& report);
+
+/// The page's data: the results, cases with their texts, and crops as data URIs, safe inside a
+/// script element.
+std::string atlasPageData(const AtlasReport& report);
+
+}  // namespace still::command

@@ -1,0 +1,207 @@
+#include "demos/stillframe/cell.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+#include "demos/stillframe/segment_meter.h"
+
+namespace still::command {
+namespace {
+
+double threadTimeMs() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
+}
+
+const CaseFrame* findFrame(const std::vector<CaseFrame>& frames, int frame) {
+    const auto found = std::find_if(frames.begin(), frames.end(),
+                                    [&](const CaseFrame& each) { return each.frame == frame; });
+    return found == frames.end() ? nullptr : &*found;
+}
+
+bool isWithin(const AtlasSegment& segment, int frame) {
+    return frame >= segment.first && frame <= segment.last;
+}
+
+int lastFrame(const AtlasCase& atlas) {
+    int last = 0;
+    for (const AtlasSegment& segment : atlas.segments) {
+        last = std::max(last, segment.last);
+    }
+    return last;
+}
+
+/// A frame loop whose size follows the case.
+class CaseLoop {
+  public:
+    CaseLoop(const PreparedCase& prepared, const Scene& scene, const FrameSettings& settings)
+        : prepared_(prepared),
+          workers_(1, Schedule::serial),
+          loop_(scene, settings, workers_),
+          size_{settings.width, settings.height} {}
+
+    FrameResult render(int frame) {
+        const Size size = sizeAt(*prepared_.atlas, prepared_.view, frame);
+        if (size.width != size_.width || size.height != size_.height) {
+            loop_.resize(size.width, size.height);
+            size_ = size;
+        }
+        return loop_.render(frame);
+    }
+
+  private:
+    const PreparedCase& prepared_;
+    Workers workers_;
+    FrameLoop loop_;
+    Size size_;
+};
+
+/// Steps through the frames of a case.
+class CellRun {
+  public:
+    CellRun(const PreparedCase& prepared, const Mode& mode)
+        : prepared_(prepared),
+          mode_(mode),
+          loop_(prepared, prepared.scene, mode.settings(prepared.view)) {
+        for (const AtlasSegment& segment : prepared.atlas->segments) {
+            meters_.emplace_back(segment);
+        }
+    }
+    void run() {
+        const int first = prepared_.atlas->segments.front().first;
+        const int last = lastFrame(*prepared_.atlas);
+        for (int frame = lastCut(prepared_.scene, first); frame <= last; ++frame) {
+            runFrame(frame);
+        }
+    }
+    Outcome<std::vector<SegmentMeasures>> finish();
+
+  private:
+    void runFrame(int frame);
+    bool isCompared(int frame) const;
+    /// The frame begins a new picture: a cut, or another size.
+    bool isCut(int frame) const;
+    std::vector<FrameError> startedAnew(size_t segment) const;
+
+    const PreparedCase& prepared_;
+    const Mode& mode_;
+    CaseLoop loop_;
+    std::vector<SegmentMeter> meters_;
+};
+
+bool CellRun::isCompared(int frame) const {
+    return std::any_of(prepared_.segments.begin(), prepared_.segments.end(),
+                       [&](const auto& frames) { return findFrame(frames, frame) != nullptr; });
+}
+
+bool CellRun::isCut(int frame) const {
+    return lastCut(prepared_.scene, frame) == frame || prepared_.atlas->resize_frame == frame;
+}
+
+void CellRun::runFrame(int frame) {
+    if (!mode_.temporal() && !isCompared(frame)) {
+        return;
+    }
+    const double start_ms = threadTimeMs();
+    const FrameResult result = loop_.render(frame);
+    const double time_ms = threadTimeMs() - start_ms;
+    for (size_t i = 0; i < meters_.size(); ++i) {
+        if (isWithin(prepared_.atlas->segments[i], frame)) {
+            meters_[i].addTime(time_ms);
+        }
+        if (const CaseFrame* compared = findFrame(prepared_.segments[i], frame)) {
+            meters_[i].compare(*compared, result.output, isCut(frame));
+        }
+    }
+}
+
+/// Errors of the compared frames from the event on, of a run that begins at the event.
+std::vector<FrameError> CellRun::startedAnew(size_t segment) const {
+    const AtlasCase& atlas = *prepared_.atlas;
+    const AtlasSegment& within = atlas.segments[segment];
+    if (!atlas.event_frame || !isWithin(within, *atlas.event_frame)) {
+        return {};
+    }
+    Scene scene = prepared_.scene;
+    scene.cuts = {*atlas.event_frame};
+    CaseLoop loop(prepared_, scene, mode_.settings(prepared_.view));
+    std::vector<FrameError> errors;
+    for (int frame = *atlas.event_frame; frame <= within.last; ++frame) {
+        const FrameResult result = loop.render(frame);
+        if (const CaseFrame* compared = findFrame(prepared_.segments[segment], frame)) {
+            const auto reference = compared->reference.picture.view();
+            errors.push_back({frame, rmse(pixelError(result.output, reference)), 0});
+        }
+    }
+    return errors;
+}
+
+Outcome<std::vector<SegmentMeasures>> CellRun::finish() {
+    std::vector<SegmentMeasures> results;
+    for (size_t i = 0; i < meters_.size(); ++i) {
+        auto measures = meters_[i].finish(startedAnew(i));
+        if (!measures) {
+            return tl::make_unexpected(measures.error());
+        }
+        results.push_back(std::move(*measures));
+    }
+    return results;
+}
+
+}  // namespace
+
+FrameSettings viewOf(const AtlasCase& atlas, int width, int height) {
+    return {.width = width,
+            .height = height,
+            .camera = {.orbit_deg = atlas.orbit_deg, .orbit_frames = 1}};
+}
+
+std::vector<int> comparedFrames(const AtlasSegment& segment) {
+    std::vector<int> frames;
+    for (int frame = segment.first; frame <= segment.last; frame += segment.step) {
+        frames.push_back(frame);
+    }
+    return frames;
+}
+
+Size sizeAt(const AtlasCase& atlas, const FrameSettings& view, int frame) {
+    const bool half = atlas.resize_frame && frame < *atlas.resize_frame;
+    return half ? Size{std::max(1, view.width / 2), std::max(1, view.height / 2)}
+                : Size{view.width, view.height};
+}
+
+void findRevealed(PreparedCase& prepared) {
+    FrameSettings settings = prepared.view;
+    settings.anti_aliasing = AntiAliasing::none;
+    settings.planes.motion = true;
+    CaseLoop loop(prepared, prepared.scene, settings);
+    for (size_t i = 0; i < prepared.segments.size(); ++i) {
+        const AtlasSegment& segment = prepared.atlas->segments[i];
+        RevealMask mask;
+        // One more, of which only the surfaces are taken.
+        const int first = std::max(0, segment.first - kRevealFrames - 1);
+        for (int frame = first; frame <= segment.last; ++frame) {
+            const bool cut = frame == first || lastCut(prepared.scene, frame) == frame;
+            const auto revealed = mask.next(*loop.render(frame).gbuffer, cut);
+            for (CaseFrame& compared : prepared.segments[i]) {
+                if (compared.frame == frame) {
+                    compared.revealed.resize(revealed.width, revealed.height);
+                    for (int y = 0; y < revealed.height; ++y) {
+                        std::copy_n(revealed.row(y), revealed.width,
+                                    compared.revealed.view().row(y));
+                    }
+                }
+            }
+        }
+    }
+}
+
+Outcome<std::vector<SegmentMeasures>> measureCell(const PreparedCase& prepared, const Mode& mode) {
+    CellRun run(prepared, mode);
+    run.run();
+    return run.finish();
+}
+
+}  // namespace still::command

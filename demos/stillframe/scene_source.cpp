@@ -1,0 +1,37 @@
+#include "demos/stillframe/scene_source.h"
+
+#include <cstdio>
+#include <string_view>
+
+#include "demos/scenes/builtin.h"
+#include "engine/load.h"
+
+namespace still::command {
+
+Outcome<Scene> openScene(const std::string& name) {
+    constexpr std::string_view kBuiltin = "builtin:";
+    if (!name.starts_with(kBuiltin)) {
+        return fromResult(loadScene(name));
+    }
+    return builtinScene(name.substr(kBuiltin.size())).map_error([](const Error& error) {
+        return Failure{ExitCode::usage, error.message};
+    });
+}
+
+void printWarnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+        std::fprintf(stderr, "stillframe: warning: %s\n", warning.c_str());
+    }
+}
+
+void frameForAspect(Scene& scene, Size size) {
+    // An empty scene has no camera keys.
+    if (scene.automatic_camera && !scene.camera.eye.keys.empty() &&
+        !scene.camera.target.keys.empty()) {
+        const glm::dvec3 direction =
+            scene.camera.eye.keys[0].value - scene.camera.target.keys[0].value;
+        frameScene(scene, direction, double(size.width) / size.height);
+    }
+}
+
+}  // namespace still::command
