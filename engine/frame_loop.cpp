@@ -8,6 +8,7 @@
 
 #include "engine/jitter.h"
 #include "postfx/laboratory.h"
+#include "postfx/sharpen.h"
 #include "postfx/spatial.h"
 
 namespace still {
@@ -72,7 +73,8 @@ struct FrameLoop::State {
     OutputTable table;
     Image<Rgb8> output;
     ColourSums sums;
-    ColourImages filtered;  ///< mean of ssaa samples, or after the spatial filter
+    ColourImages filtered;      ///< mean of ssaa samples, or after spatial filter or sharpening
+    Image<uint8_t> confidence;  ///< for sharpening only
     StageTimes times;
     int resolved_frame = kNoFrame;  ///< the frame that the TAA history ends with
     int resize_frame = 0;           ///< the first frame of the present size
@@ -92,6 +94,8 @@ struct FrameLoop::State {
 
     bool temporal() const { return settings.anti_aliasing == AntiAliasing::taa; }
     bool gathers() const { return settings.policy.method == Method::gather; }
+    bool sharpens() const { return temporal() && settings.policy.sharpness_q15 > 0; }
+    int sampleCap() const { return int(jitterPeriod(settings.policy.jitter)); }
     int ssaaSamples() const;
     int historyStart(int frame) const;
     RasterSettings rasterSettings() const;
@@ -101,6 +105,9 @@ struct FrameLoop::State {
     void resolveFrame(int frame);
     void resolveHistory(int frame);
     ColourTargets resizeFiltered();
+    ColourPlanes resolved() const;
+    ImageView<const uint8_t> fullConfidence();
+    void sharpenResolved();
     void averageSamples(const FrameState& frame);
     void filterSample();
     void renderAlone(int frame);
@@ -179,9 +186,13 @@ void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
         laboratory.resolve(gbuffer, evidence, settings.policy, settings.simd, workers);
         return;
     }
-    const TaaFrame evidence{.reset = frame.cut, .shading_changed = frame.lighting_changed};
-    const TaaSettings taa_settings{.simd = settings.simd,
-                                   .sample_cap = int(jitterPeriod(settings.policy.jitter))};
+    const TaaFrame evidence{.reset = frame.cut,
+                            .shading_changed = frame.lighting_changed,
+                            .changed_surfaces = frame.changed_surfaces,
+                            .jitter_x_fx8 = offset.x_fx8,
+                            .jitter_y_fx8 = offset.y_fx8};
+    const TaaSettings taa_settings{
+        .simd = settings.simd, .sample_cap = sampleCap(), .ring = settings.policy.ring};
     taa.resolve(gbuffer, evidence, taa_settings, workers);
 }
 
@@ -208,6 +219,9 @@ void FrameLoop::State::resolveHistory(int frame) {
     for (int replayed = first; replayed <= frame; ++replayed) {
         times = {};
         resolveFrame(replayed);
+    }
+    if (sharpens()) {
+        timed(times.taa_ms, [&] { sharpenResolved(); });
     }
 }
 
@@ -267,14 +281,40 @@ void FrameLoop::State::renderAlone(int frame) {
     }
 }
 
-ColourPlanes FrameLoop::State::colour() const {
-    if (temporal()) {
-        return gathers() ? taa.colour() : laboratory.colour();
+ColourPlanes FrameLoop::State::resolved() const {
+    return gathers() ? taa.colour() : laboratory.colour();
+}
+
+/// Confidence with 255 as full. A pixel that has all its samples is fully known.
+ImageView<const uint8_t> FrameLoop::State::fullConfidence() {
+    if (!gathers()) {
+        return laboratory.confidence();
     }
-    if (settings.anti_aliasing == AntiAliasing::fxaa || ssaaSamples() > 1) {
+    const ImageView<const uint8_t> counts = taa.sampleCount();
+    const int cap = sampleCap();
+    confidence.resize(counts.width, counts.height);
+    const ImageView<uint8_t> scaled = confidence.view();
+    workers.parallelFor(counts.height, kRowGrain, [&](int begin, int end, int) {
+        for (int y = begin; y < end; ++y) {
+            for (int x = 0; x < counts.width; ++x) {
+                scaled.row(y)[x] = uint8_t(counts.row(y)[x] * 255 / cap);
+            }
+        }
+    });
+    return scaled;
+}
+
+void FrameLoop::State::sharpenResolved() {
+    sharpen(resolved(), fullConfidence(), settings.policy.sharpness_q15, resizeFiltered(),
+            settings.simd, workers);
+}
+
+ColourPlanes FrameLoop::State::colour() const {
+    const bool fxaa = settings.anti_aliasing == AntiAliasing::fxaa;
+    if (fxaa || sharpens() || ssaaSamples() > 1) {
         return {filtered.red.view(), filtered.green.view(), filtered.blue.view()};
     }
-    return planesOf(gbuffer);
+    return temporal() ? resolved() : planesOf(gbuffer);
 }
 
 FrameResult FrameLoop::State::result() const {
@@ -286,7 +326,7 @@ FrameResult FrameLoop::State::result() const {
     if (temporal() && gathers()) {
         result.sample_count = taa.sampleCount();
         result.confidence = result.sample_count;
-        result.confidence_full = int(jitterPeriod(settings.policy.jitter));
+        result.confidence_full = sampleCap();
         result.converged = taa.converged();
     } else if (temporal()) {
         result.confidence = laboratory.confidence();

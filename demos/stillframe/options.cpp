@@ -50,8 +50,8 @@ Outcome<void> applyTaaSetting(std::string_view setting, TaaPolicy& policy) {
             setPolicyKey(policy, name, setting.substr(equals + 1))) {
             return {};
         }
-        return usageError("--taa: " + std::string(setting) + ": expected " + std::string(name) +
-                          "= and one of " + std::string(key.values));
+        return usageError("--taa: " + std::string(setting) + ": " + std::string(name) + " takes " +
+                          std::string(key.values));
     }
     return usageError("--taa: " + std::string(setting) + ": expected KEY=VALUE with a key of " +
                       listed(taaPolicyKeys(), [](const TaaPolicyKey& key) { return key.name; }));

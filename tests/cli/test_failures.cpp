@@ -29,8 +29,9 @@ const std::string kTriangle = "stillframe render builtin:triangle ";
 
 TEST_CASE("command: help and version are answers, not errors", "[cli]") {
     const TempFolder folder;
-    for (const char* command : {"stillframe --help", "stillframe render --help",
-                                "stillframe compare --help", "stillframe --version"}) {
+    for (const char* command :
+         {"stillframe --help", "stillframe render --help", "stillframe compare --help",
+          "stillframe presets --help", "stillframe --version"}) {
         const Ran ran = shell(folder.path(), command);
         CHECK(ran.code == 0);
         CHECK_FALSE(ran.out.empty());
@@ -58,7 +59,19 @@ TEST_CASE("command: what cannot be meant is refused with code 2", "[cli]") {
                                   "-o x.png --frames 0",
                                   "-o x.png --frames many",
                                   "-o x.png --start -1",
-                                  "-o x.png --aa fxaa",
+                                  "-o x.png --aa msaa",
+                                  "-o x.png --aa taa:",
+                                  "-o x.png --aa taa:nobody",
+                                  "-o x.png --aa taa:still,fast",
+                                  "-o x.png --aa none --taa alpha=0.1",
+                                  "-o x.png --aa fxaa --taa alpha=0.1",
+                                  "-o x.png --taa alpha",
+                                  "-o x.png --taa alpha=",
+                                  "-o x.png --taa alpha=2",
+                                  "-o x.png --taa alpha=0.1,,sigma=1",
+                                  "-o x.png --taa beta=0.1",
+                                  "-o x.png --taa jitter=halton",
+                                  "-o x.png --dump confidence --aa fxaa",
                                   "-o x.png --aa ssaa:0",
                                   "-o x.png --aa ssaa:65537",
                                   "-o x.png --dump depth,feelings",

@@ -6,6 +6,7 @@
 #include "engine/hash.h"
 #include "engine/jitter.h"
 #include "engine/shapes.h"
+#include "postfx/sharpen.h"
 #include "postfx/spatial.h"
 
 using namespace still;
@@ -172,4 +173,32 @@ TEST_CASE("frame_loop: fxaa is the spatial filter of the sample in the centre",
     CHECK(hashPlane(result.linear.blue) == hashPlane(std::as_const(blue).view()));
     CHECK(hashPlane(result.linear.red) != hashPlane(std::as_const(gbuffer.red).view()));
     CHECK(result.gbuffer->planes == PlaneSet{});
+}
+
+TEST_CASE("frame_loop: sharpening follows the resolve and leaves history alone",
+          "[unit][frame_loop]") {
+    const Scene scene = ringScene();
+    Workers workers(1, Schedule::serial);
+    for (const char* name : {"still", "basic"}) {
+        TaaPolicy policy = findPreset(name)->policy;
+        FrameLoop plain(scene, settingsOf(policy), workers);
+        policy.sharpness_q15 = 20000;
+        FrameLoop sharp(scene, settingsOf(policy), workers);
+        sharp.render(1);  // so that frame 3 builds on a history whose frames were sharpened
+        const FrameResult before = plain.render(3), after = sharp.render(3);
+        Image<uint8_t> confidence(kWidth, kHeight);
+        for (int y = 0; y < kHeight; ++y) {
+            for (int x = 0; x < kWidth; ++x) {
+                confidence.at(x, y) =
+                    uint8_t(before.confidence.at(x, y) * 255 / before.confidence_full);
+            }
+        }
+        Image<uint16_t> red(kWidth, kHeight), green(kWidth, kHeight), blue(kWidth, kHeight);
+        sharpen(before.linear, std::as_const(confidence).view(), 20000,
+                {red.view(), green.view(), blue.view()}, bestSimdTarget(), workers);
+        CAPTURE(name);
+        CHECK(hashPlane(after.linear.red) == hashPlane(std::as_const(red).view()));
+        CHECK(hashPlane(after.linear.green) == hashPlane(std::as_const(green).view()));
+        CHECK(hashPlane(after.linear.red) != hashPlane(before.linear.red));
+    }
 }
