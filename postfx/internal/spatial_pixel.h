@@ -195,25 +195,60 @@ Window windowAt(const Picture<Edges>& picture, int x, int y) {
     return window;
 }
 
-/// Mean of the 3×3 window regardless of surfaces, leaning towards the pixel's centre: for details
-/// that are too small for a line through their edges to mean anything. The weights are those that
-/// least squares find for chain link.
-inline int windowMean(const int (&window)[9], int jitter_x_fx8, int jitter_y_fx8) {
-    constexpr int kCorner_q10 = 51, kSide_q10 = 82;
+/// Weighted mean of the surroundings regardless of surfaces, leaning towards the pixel's centre:
+/// for details that are too small for a line through their edges to mean anything. at(dx, dy) reads
+/// a channel. The weights follow those that least squares find for chain link and thin wires; what
+/// remains of 1024 is the centre's.
+template <class At>
+int crowdMean(At&& at, int jitter_x_fx8, int jitter_y_fx8) {
+    constexpr int kCorner_q10 = 61, kSide_q10 = 82, kFarSide_q10 = -20, kFarCorner_q10 = 10;
+    const int e = at(0, 0);
+    const auto cross = [&](int d) { return at(-d, 0) + at(d, 0) + at(0, -d) + at(0, d) - 4 * e; };
+    const auto corners = [&](int d) {
+        return at(-d, -d) + at(d, -d) + at(-d, d) + at(d, d) - 4 * e;
+    };
     const auto lean = [](int d_fx8) { return roundShift(77 * d_fx8, 6); };  // 0.3 d
-    const int lean_x = lean(-jitter_x_fx8), lean_y = lean(-jitter_y_fx8);
-    const int corners = window[0] + window[2] + window[6] + window[8];
-    const int sides = window[1] + window[3] + window[5] + window[7];
-    const int centre = window[4];
-    const int sum = kCorner_q10 * (corners - 4 * centre) + kSide_q10 * (sides - 4 * centre) +
-                    lean_x * (window[5] - window[3]) + lean_y * (window[7] - window[1]);
-    return std::clamp(centre + roundShift(sum, 10), 0, 65535);
+    const int sum = kSide_q10 * cross(1) + kCorner_q10 * corners(1) + kFarSide_q10 * cross(2) +
+                    kFarCorner_q10 * corners(2) + lean(-jitter_x_fx8) * (at(1, 0) - at(-1, 0)) +
+                    lean(-jitter_y_fx8) * (at(0, 1) - at(0, -1));
+    return std::clamp(e + roundShift(sum, 10), 0, 65535);
 }
 
-/// How far the window mean replaces the lines, in 1/16: where edges are crowded (more than 4 of
-/// 12) or shorter than 5 pixels.
+/// How far the crowd's mean replaces the lines, in 1/16: where edges are crowded (more than 5 of
+/// the 12 in the window) or shorter than 5 pixels.
 inline int crowding(const Window& window, const Shares& shares) {
-    return std::clamp(std::max((window.edges - 4) * 4, (5 - shares.length) * 5), 0, 16);
+    return std::clamp(std::max((window.edges - 5) * 4, (5 - shares.length) * 5), 0, 16);
+}
+
+/// A channel around a pixel, up to two pixels away.
+class Surroundings {
+  public:
+    template <class Edges>
+    Surroundings(const Picture<Edges>& picture, int x, int y) {
+        for (int i = 0; i < 5; ++i) {
+            columns_[size_t(i)] = picture.column(x - 2 + i);
+            rows_[size_t(i)] = picture.row(y - 2 + i);
+        }
+    }
+    int operator()(ImageView<const uint16_t> plane, int dx, int dy) const {
+        return plane.row(rows_[size_t(dy + 2)])[columns_[size_t(dx + 2)]];
+    }
+
+  private:
+    std::array<int, 5> columns_, rows_;
+};
+
+/// The surface's own mean, and of the neighbours across the edges what the lines give.
+template <class At>
+int linedMean(At&& at, const Window& window, const Shares& shares, Taps across, Taps down) {
+    int own[9];
+    for (int i = 0; i < 9; ++i) {
+        own[i] = window.same[size_t(i)] ? at(i % 3 - 1, i / 3 - 1) : at(0, 0);
+    }
+    const int sum = pixelMean(own, across, down) * (1024 - shares.total_q10) +
+                    at(0, 1) * shares.q10[0] + at(0, -1) * shares.q10[1] +
+                    at(1, 0) * shares.q10[2] + at(-1, 0) * shares.q10[3];
+    return roundShift(sum, 10);
 }
 
 /// The filtered pixel.
@@ -224,22 +259,16 @@ void filteredPixel(const Picture<Edges>& picture, int x, int y, int rgb[3]) {
     const Taps across = pixelTaps(input.jitter_x_fx8), down = pixelTaps(input.jitter_y_fx8);
     const Shares shares = window.edges > 0 ? edgeShares(picture, x, y) : Shares{};
     const int crowded = window.edges > 0 ? crowding(window, shares) : 0;
-    const ImageView<const uint16_t> planes[3] = {input.colour.red, input.colour.green,
-                                                 input.colour.blue};
-    for (int c = 0; c < 3; ++c) {
-        int all[9], own[9];
-        for (int i = 0; i < 9; ++i) {
-            all[i] = planes[c].row(picture.row(y - 1 + i / 3))[picture.column(x - 1 + i % 3)];
+    const Surroundings around(picture, x, y);
+    for (const ImageView<const uint16_t>& plane :
+         {input.colour.red, input.colour.green, input.colour.blue}) {
+        const auto at = [&](int dx, int dy) { return around(plane, dx, dy); };
+        int value = crowded < 16 ? linedMean(at, window, shares, across, down) : 0;
+        if (crowded > 0) {
+            const int mean = crowdMean(at, input.jitter_x_fx8, input.jitter_y_fx8);
+            value += roundShift((mean - value) * crowded, 4);
         }
-        for (int i = 0; i < 9; ++i) {
-            own[i] = window.same[size_t(i)] ? all[i] : all[4];
-        }
-        const int inside = pixelMean(own, across, down);
-        const int sum = inside * (1024 - shares.total_q10) + all[7] * shares.q10[0] +
-                        all[1] * shares.q10[1] + all[5] * shares.q10[2] + all[3] * shares.q10[3];
-        const int lined = roundShift(sum, 10);
-        const int mean = windowMean(all, input.jitter_x_fx8, input.jitter_y_fx8);
-        rgb[c] = lined + roundShift((mean - lined) * crowded, 4);
+        *rgb++ = value;
     }
 }
 
