@@ -96,6 +96,12 @@ std::vector<AtlasCase> patternCases() {
                    "Moving highlights are outliers in every neighbourhood: kept they smear, "
                    "clipped they flash.",
                    "flicker", makeSparklePan),
+        stillCase("parallax-still",
+                  "Steps of a height map alias inside a surface, where depth and id see no edge.",
+                  "psnr", makeParallaxStill),
+        movingCase("parallax-pan",
+                   "Motion is that of the flat surface and not that of the ground that is seen.",
+                   "flip", makeParallaxPan),
     };
 }
 

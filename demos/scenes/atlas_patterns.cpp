@@ -148,6 +148,31 @@ Scene dither(const char* name) {
     return scene;
 }
 
+/// Coarse bricks with deep joints, in the corner of a room.
+Scene parallax(const char* name) {
+    Scene scene = makeStage(name);
+    const Bond bond{.columns = 4,
+                    .rows = 8,
+                    .joint = 0.3,
+                    .aspect = 2,
+                    .block = {190, 120, 84},
+                    .mortar = {70, 66, 62},
+                    .variation = 0.3,
+                    .relief = 1.0,
+                    .seed = 115};
+    MeshBuilder bricks(
+        addMaterial(scene, {.diffuse = {1, 1, 1},
+                            .colour_texture = addTexture(scene, paintBond(bond, 256)),
+                            .normal_texture = addTexture(scene, paintBondRelief(bond, 256)),
+                            .height_texture = addTexture(scene, paintBondHeight(bond, 256)),
+                            .height_scale = 0.05f}));
+    bricks.rectangle({-4, -2.4, 8}, {24, 0, 0}, {0, 0, -16}, 4.0);
+    bricks.rectangle({-4, -2.4, 8}, {0, 0, -16}, {0, 12, 0}, 4.0);
+    bricks.rectangle({-4, -2.4, -8}, {24, 0, 0}, {0, 12, 0}, 4.0);
+    addObject(scene, "bricks", bricks.takeWithTangents());
+    return scene;
+}
+
 }  // namespace
 
 Scene makeZonePlateStill() {
@@ -184,6 +209,15 @@ Scene makeSparkleStill() {
 Scene makeSparklePan() {
     Scene scene = sparkle("atlas-sparkle-pan");
     truck(scene, dvec2{0.7, 0});
+    return scene;
+}
+
+Scene makeParallaxStill() {
+    return parallax("atlas-parallax-still");
+}
+Scene makeParallaxPan() {
+    Scene scene = parallax("atlas-parallax-pan");
+    truck(scene, dvec2{1.2, 0.3});
     return scene;
 }
 

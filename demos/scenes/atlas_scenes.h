@@ -29,6 +29,8 @@ Scene makeCheckerSlow();     ///< camera turns by 0.1 … 0.5 px/frame
 Scene makeCheckerHalf();     ///< camera turns by ½ px/frame
 Scene makeSparkleStill();    ///< highlights on a bumpy normal map without mips
 Scene makeSparklePan();      ///< the same under a camera at 0.7 px/frame
+Scene makeParallaxStill();   ///< the corner of a height-mapped room
+Scene makeParallaxPan();     ///< the same under a camera at (1.2, 0.3) px/frame
 Scene makeDepthPan();        ///< depths 0.02 … 950; the nearest pane moves by 1.1 px/frame
 Scene makeDitherStill();     ///< ordered-dither alpha, about one texel per pixel
 Scene makeDitherPan();       ///< the same under a camera at 0.7 px/frame

@@ -108,6 +108,14 @@ Texture paintBondRelief(const Bond& bond, int size) {
     return makeNormalTexture(image.view(), Wrap::repeat);
 }
 
+AlphaTexture paintBondHeight(const Bond& bond, int size) {
+    const Image<Rgba8> image = painted(size, [&](double u, double v) {
+        const double bump = 40 * fractalNoise(u, v, 48, 3, bond.seed + 5);
+        return toRgba(dvec3{215 * blockCover(bond, blockAt(bond, u, v), u, v) + bump});
+    });
+    return makeHeightTexture(image.view(), Wrap::repeat);
+}
+
 Texture paintChecker(const Checker& checker, int size) {
     return colourTexture(painted(size, [&](double u, double v) {
         const int column = int(u * checker.cells), row = int(v * checker.cells);

@@ -23,6 +23,8 @@ struct Bond {
 Texture paintBond(const Bond& bond, int size);
 /// Normal map that fits paintBond() of the same bond.
 Texture paintBondRelief(const Bond& bond, int size);
+/// Height map that fits it: blocks at the top, joints at the bottom.
+AlphaTexture paintBondHeight(const Bond& bond, int size);
 
 /// `cells` × `cells` polished slabs, light and dark in turn, each with its own veins.
 struct Checker {

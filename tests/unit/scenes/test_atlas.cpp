@@ -208,10 +208,11 @@ TEST_CASE("atlas: cameras move by the pixels per frame that are stated", "[scene
         const char* name;
         double speed, tolerance;
     };
-    const Pan pans[] = {{"wires-pan", 1.7, 1e-6},       {"fence-pan", 2.3, 1e-6},
-                        {"zone-plate-half", 0.5, 1e-6}, {"sparkle-pan", 0.7, 1e-6},
-                        {"dither-pan", 0.7, 1e-6},      {"fast-pan", 60, 1e-6},
-                        {"low-resolution", 0.6, 1e-6},  {"screen-edges", 3.1064449, 1e-6}};
+    const Pan pans[] = {{"wires-pan", 1.7, 1e-6},         {"fence-pan", 2.3, 1e-6},
+                        {"zone-plate-half", 0.5, 1e-6},   {"sparkle-pan", 0.7, 1e-6},
+                        {"dither-pan", 0.7, 1e-6},        {"fast-pan", 60, 1e-6},
+                        {"low-resolution", 0.6, 1e-6},    {"parallax-pan", 1.2369317, 1e-6},
+                        {"screen-edges", 3.1064449, 1e-6}};
     for (const Pan& pan : pans) {
         for (const int frame : {1, 24, 32, 39}) {
             INFO(pan.name << " frame " << frame);
