@@ -29,7 +29,8 @@ constexpr int kMaxJitterScale_fx8 = 1024;
 /// Sample `index` of a pattern.
 /// `scale_fx8`, 0 … kMaxJitterScale_fx8, multiplies offsets (256 = as they are), rounded half up;
 /// what would leave the pixel stays at its edge. `scramble` takes the samples of each period after
-/// the first in another order (of those in which aligned runs of 2, 4, 8 … stay together).
+/// the first in another order (of those in which aligned runs of 2, 4, 8 … stay together). Without
+/// it any `period` consecutive samples are the whole set; with it only those of a period are.
 /// Zero mean over a period: none, uniform2, rgss4, hammersley, net. Halton begins at index 1, its
 /// values are exact and rounded half up. Formulas: jitter.cpp.
 SampleOffset jitterSample(JitterPattern pattern, int scale_fx8, bool scramble, uint32_t index);

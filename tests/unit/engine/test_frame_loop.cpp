@@ -193,6 +193,7 @@ TEST_CASE("frame_loop: sub-frames converge to the mean of a jitter period", "[un
 TEST_CASE("frame_loop: a resized loop begins anew at its next frame", "[unit][frame_loop]") {
     const Scene scene = smallScene(true);
     FrameSettings settings = smallSettings(AntiAliasing::taa);
+    settings.policy.method = GENERATE(Method::gather, Method::recursive);
     int stages = 0;
     settings.clock_ms = [&stages] { return double(++stages); };
     Workers workers(1, Schedule::serial);
