@@ -23,7 +23,8 @@ table { border-collapse: separate; border-spacing: 1px; }
 thead th { position: sticky; top: 0; z-index: 2; background: #fff; vertical-align: bottom;
   padding: 0.3em 0.1em; font-weight: 600; writing-mode: vertical-rl; transform: rotate(180deg);
   text-align: left; }
-thead th:first-child { z-index: 3; writing-mode: horizontal-tb; transform: none; left: 0; }
+thead th:first-child { z-index: 3; writing-mode: horizontal-tb; transform: none; left: 0;
+  padding-left: 0.5em; }
 tbody th { position: sticky; left: 0; z-index: 1; background: #fff; text-align: left;
   font-weight: 600; padding: 0 0.5em; white-space: nowrap; border-right: 1px solid #ccd2d8; }
 tbody th small { font-weight: 400; color: #5a646e; }
@@ -32,6 +33,10 @@ td button { font: 13px/1 system-ui, sans-serif; font-variant-numeric: tabular-nu
   width: 4.1em; height: 2.3em; cursor: pointer; color: #14181c; border-radius: 0; }
 td button.best { font-weight: 700; outline: 2px solid #14181c; outline-offset: -2px; }
 td button:focus-visible { outline: 3px solid #0a58ca; }
+@media (max-width: 600px) {
+  tbody th { white-space: normal; max-width: 7.5em; font-size: 0.85em; line-height: 1.15; }
+  tbody th small { display: block; }
+}
 #sheet { position: fixed; left: 0; right: 0; bottom: 0; z-index: 9; background: #fff;
   border-top: 2px solid #14181c; box-shadow: 0 -4px 18px #0003; padding: 0.7em 1em;
   max-height: 78vh; overflow: auto; }

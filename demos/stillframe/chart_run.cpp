@@ -13,6 +13,8 @@ namespace still::command {
 namespace {
 
 constexpr int kCompareStep = 4;
+/// Medians of the same work differ by so much.
+constexpr double kTimeTolerance = 0.03;
 
 double nowMs() {
     using Milliseconds = std::chrono::duration<double, std::milli>;
@@ -135,10 +137,10 @@ void markFronts(std::vector<ChartPoint>& points) {
         by_psnr.push_back({point.ms, -point.psnr});
         by_flip.push_back({point.ms, point.flip});
     }
-    for (size_t i : paretoFront(by_psnr)) {
+    for (size_t i : paretoFront(by_psnr, kTimeTolerance)) {
         points[i].psnr_front = true;
     }
-    for (size_t i : paretoFront(by_flip)) {
+    for (size_t i : paretoFront(by_flip, kTimeTolerance)) {
         points[i].flip_front = true;
     }
 }

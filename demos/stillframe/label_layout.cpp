@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMarker = 6;  ///< half the side of what a point covers
 constexpr double kGap = 3;
-constexpr double kFirstRadius = 10, kLastRadius = 260, kRadiusStep = 4;
+constexpr double kFirstRadius = 10, kLastRadius = 400, kRadiusStep = 4;
 constexpr int kDirections = 24;
 constexpr double kLeaderFrom = 9;
 
@@ -33,22 +33,30 @@ class Layout {
     Layout(std::span<const LabelledPoint> points, std::span<const Box> obstacles, const Box& area)
         : points_(points), obstacles_(obstacles), area_(area) {}
 
+    /// A line that crosses other labels is better than a label that covers something.
     PlacedLabel place(size_t index) {
-        const LabelledPoint& point = points_[index];
-        for (double radius = kFirstRadius; radius <= kLastRadius; radius += kRadiusStep) {
-            for (int direction = 0; direction < kDirections; ++direction) {
-                const PlacedLabel label = labelAt(point, boxAt(point, radius, direction));
-                if (isFree(index, label)) {
-                    placed_.push_back(label);
-                    return label;
-                }
-            }
+        auto label = search(index, true);
+        if (!label) {
+            label = search(index, false);
         }
-        placed_.push_back(labelAt(point, boxAt(point, kFirstRadius, 0)));
+        placed_.push_back(
+            label.value_or(labelAt(points_[index], boxAt(points_[index], kFirstRadius, 0))));
         return placed_.back();
     }
 
   private:
+    std::optional<PlacedLabel> search(size_t index, bool free_leader) const {
+        const LabelledPoint& point = points_[index];
+        for (double radius = kFirstRadius; radius <= kLastRadius; radius += kRadiusStep) {
+            for (int direction = 0; direction < kDirections; ++direction) {
+                const PlacedLabel label = labelAt(point, boxAt(point, radius, direction));
+                if (isFree(label.box) && (!free_leader || leaderIsFree(index, label))) {
+                    return label;
+                }
+            }
+        }
+        return std::nullopt;
+    }
     static PlacedLabel labelAt(const LabelledPoint& point, const Box& box) {
         PlacedLabel label{box, false, 0, 0};
         label.leader_x = std::clamp(point.x, box.x, box.x + box.width);
@@ -56,17 +64,15 @@ class Layout {
         label.leader = std::hypot(label.leader_x - point.x, label.leader_y - point.y) > kLeaderFrom;
         return label;
     }
-    bool isFree(size_t index, const PlacedLabel& label) const {
-        const Box grown{label.box.x - kGap, label.box.y - kGap / 2, label.box.width + 2 * kGap,
-                        label.box.height + kGap};
-        return area_.contains(label.box) &&
+    bool isFree(const Box& box) const {
+        const Box grown{box.x - kGap, box.y - kGap / 2, box.width + 2 * kGap, box.height + kGap};
+        return area_.contains(box) &&
                std::none_of(points_.begin(), points_.end(),
                             [&](const LabelledPoint& p) { return grown.overlaps(around(p)); }) &&
                std::none_of(placed_.begin(), placed_.end(),
                             [&](const PlacedLabel& p) { return grown.overlaps(p.box); }) &&
                std::none_of(obstacles_.begin(), obstacles_.end(),
-                            [&](const Box& box) { return grown.overlaps(box); }) &&
-               leaderIsFree(index, label);
+                            [&](const Box& other) { return grown.overlaps(other); });
     }
     /// The line passes neither labels nor other points.
     bool leaderIsFree(size_t index, const PlacedLabel& label) const {

@@ -1,29 +1,32 @@
 #include "demos/stillframe/pareto.h"
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 #include <tuple>
 
 namespace still::command {
+namespace {
 
-std::vector<size_t> paretoFront(std::span<const Offer> offers) {
-    std::vector<size_t> order(offers.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-        return std::tuple(offers[a].price, offers[a].error, a) <
-               std::tuple(offers[b].price, offers[b].error, b);
-    });
+bool beats(const Offer& a, const Offer& b, double tolerance) {
+    const bool dearer = a.price > b.price * (1 + tolerance);
+    const bool cheaper = a.price * (1 + tolerance) < b.price;
+    return !dearer && a.error <= b.error && (cheaper || a.error < b.error);
+}
+
+}  // namespace
+
+std::vector<size_t> paretoFront(std::span<const Offer> offers, double tolerance) {
     std::vector<size_t> front;
-    Offer last{0, std::numeric_limits<double>::infinity()};
-    for (size_t i : order) {
-        const Offer& offer = offers[i];
-        const bool equal = offer.error == last.error && offer.price == last.price;
-        if (offer.error < last.error || (equal && !front.empty())) {
+    for (size_t i = 0; i < offers.size(); ++i) {
+        const bool beaten = std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
+            return beats(other, offers[i], tolerance);
+        });
+        if (!beaten) {
             front.push_back(i);
-            last = offer;
         }
     }
+    std::sort(front.begin(), front.end(), [&](size_t a, size_t b) {
+        return std::tuple(offers[a].price, a) < std::tuple(offers[b].price, b);
+    });
     return front;
 }
 

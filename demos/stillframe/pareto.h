@@ -12,8 +12,10 @@ struct Offer {
     double error = 0;
 };
 
-/// Indices of the offers of which no other one is at most as dear and at most as far off, and
-/// better in one of the two; by price, then by index. Of equal offers all are on the front.
-std::vector<size_t> paretoFront(std::span<const Offer> offers);
+/// Indices of the offers that no other one beats; by price, then by index. Prices that differ by at
+/// most `tolerance` (0.03 = 3 %) count as equal, because they are measured. An offer is beaten by
+/// one that is not dearer and not farther off, and better in one of the two; of equal offers all
+/// stay.
+std::vector<size_t> paretoFront(std::span<const Offer> offers, double tolerance = 0);
 
 }  // namespace still::command
