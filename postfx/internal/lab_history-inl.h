@@ -61,13 +61,19 @@ HWY_INLINE void takeLarger(const TaaPolicy& p, Guides& best, const Guides& other
     }
 }
 
-HWY_INLINE void storeStrip(const Guides& g, GuideStrip& strip, int i) {
+HWY_INLINE void storeStrip(const TaaPolicy& p, const Guides& g, GuideStrip& strip, int i) {
     store(g.key, strip.key + i);
     store(g.motion, strip.motion + i);
-    store(g.depth, strip.depth + i);
-    store(g.expected, strip.expected + i);
-    store(g.surface, strip.surface + i);
-    store(g.normal, strip.normal + i);
+    if (needsDepth(p)) {
+        store(g.depth, strip.depth + i);
+        store(g.expected, strip.expected + i);
+    }
+    if (p.id_reject) {
+        store(g.surface, strip.surface + i);
+    }
+    if (needsNormal(p)) {
+        store(g.normal, strip.normal + i);
+    }
 }
 
 HWY_INLINE Guides loadStrip(const GuideStrip& strip, int i) {
@@ -89,7 +95,7 @@ HWY_INLINE void fillGuides(const ResolveJob& job, const TileRect& tile, int y, G
         if (y + 1 < job.height) {
             takeLarger(p, best, guidesAt(p, job.now, at + job.stride));
         }
-        storeStrip(best, strip, i);
+        storeStrip(p, best, strip, i);
     }
     if (tile.x0 == 0) {
         strip.key[kMaxLanes - 1] = INT32_MIN;

@@ -156,8 +156,17 @@ HWY_INLINE VI32 largest(const Colours& c) {
     return hn::Max(hn::Max(c.v[0], c.v[1]), c.v[2]);
 }
 
+template <int kBits>
+HWY_INLINE VI32 interpolated(const uint32_t* table, VI32 index) {
+    const VI32 whole = hn::ShiftRight<kBits>(index);
+    const VI32 first = lookUp(table, whole);
+    const VI32 step = hn::Sub(lookUp(table + 1, whole), first);
+    const VI32 part = hn::Mul(step, hn::And(index, all((1 << kBits) - 1)));
+    return hn::Add(first, hn::ShiftRight<kBits>(part));
+}
+
 HWY_INLINE Colours toneIn(const Colours& c) {
-    const VI32 scale = quotient<16>(all(2048), hn::Add(all(4096), largest(c)));
+    const VI32 scale = interpolated<6>(kToneIn.of, largest(c));
     Colours t;
     for (int k = 0; k < 3; ++k) {
         t.v[k] = shiftUnsigned<12>(hn::Mul(c.v[k], scale));
@@ -170,7 +179,7 @@ HWY_INLINE Colours toneOut(const Colours& c) {
     for (int k = 0; k < 3; ++k) {
         t.v[k] = hn::Min(c.v[k], all(kToneMax));
     }
-    const VI32 scale = quotient<17>(all(1024), hn::Sub(all(32768), largest(t)));
+    const VI32 scale = interpolated<5>(kToneOut.of, largest(t));
     for (int k = 0; k < 3; ++k) {
         t.v[k] = hn::Min(roundShift<15>(hn::Mul(t.v[k], scale)), all(65535));
     }

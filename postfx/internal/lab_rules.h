@@ -58,8 +58,16 @@ constexpr int32_t largest(const Rgb& c) {
 /// The curve's value for 16.0.
 constexpr int32_t kToneMax = 30840;
 
+/// table[index / 2^kBits], interpolated.
+template <int kBits>
+constexpr uint32_t interpolated(const uint32_t* table, int32_t index) {
+    const auto first = int32_t(table[index >> kBits]);
+    const int32_t step = int32_t(table[(index >> kBits) + 1]) - first;
+    return uint32_t(first + ((step * (index & ((1 << kBits) - 1))) >> kBits));
+}
+
 constexpr Rgb toneIn(const Rgb& c) {
-    const uint32_t scale = quotient<16>(2048, uint32_t(4096 + largest(c)));  // 2^27 / (1 + max)
+    const uint32_t scale = interpolated<6>(kToneIn.of, largest(c));
     const auto mapped = [&](int32_t v) { return int32_t((uint32_t(v) * scale) >> 12); };
     return {{mapped(c.v[0]), mapped(c.v[1]), mapped(c.v[2])}};
 }
@@ -67,7 +75,7 @@ constexpr Rgb toneIn(const Rgb& c) {
 constexpr Rgb toneOut(const Rgb& c) {
     const Rgb t{
         {std::min(c.v[0], kToneMax), std::min(c.v[1], kToneMax), std::min(c.v[2], kToneMax)}};
-    const uint32_t scale = quotient<17>(1024, uint32_t(32768 - largest(t)));  // 2^27 / (1 − max)
+    const uint32_t scale = interpolated<5>(kToneOut.of, largest(t));
     const auto linear = [&](int32_t v) {
         return std::min(int32_t((uint32_t(v) * scale + 16384) >> 15), 65535);
     };

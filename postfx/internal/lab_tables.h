@@ -39,6 +39,24 @@ constexpr ReciprocalTable makeReciprocalTable() {
 }
 alignas(64) inline constexpr ReciprocalTable kReciprocals = makeReciprocalTable();
 
+/// 2^27 / x, rounded to nearest, for x = kFirst + i · kStep: to be interpolated.
+template <int kFirst, int kStep, int kCount>
+struct InverseTable {
+    uint32_t of[kCount];
+};
+template <int kFirst, int kStep, int kCount>
+constexpr auto makeInverseTable() {
+    InverseTable<kFirst, kStep, kCount> table{};
+    for (int i = 0; i < kCount; ++i) {
+        const auto x = uint32_t(kFirst + i * kStep);
+        table.of[i] = ((uint32_t{1} << 27) + x / 2) / x;
+    }
+    return table;
+}
+/// For 1 + max, max in fx12, and 1 − max, max in fx15, up to 16.0 each.
+alignas(64) inline constexpr auto kToneIn = makeInverseTable<4096, 64, 1025>();
+alignas(64) inline constexpr auto kToneOut = makeInverseTable<32768, -32, 965>();
+
 /// 1 / n in 2^-15, rounded to nearest; n ≥ 1.
 struct MeanAlphaTable {
     uint32_t of[256];
