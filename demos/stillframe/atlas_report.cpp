@@ -106,11 +106,14 @@ std::string field(const std::optional<double>& value) {
 }  // namespace
 
 std::string atlasJson(const AtlasReport& report) {
-    Json json{{"width", report.width}, {"height", report.height}, {"results", Json::array()}};
+    std::string text = "{\"width\": " + std::to_string(report.width) +
+                       ", \"height\": " + std::to_string(report.height) + ", \"results\": [";
+    const char* separator = "\n";
     for (const AtlasResult& result : report.results) {
-        json["results"].push_back(resultJson(result));
+        text += separator + resultJson(result).dump();
+        separator = ",\n";
     }
-    return json.dump(1) + "\n";
+    return text + "\n]}\n";
 }
 
 std::string atlasCsv(const AtlasReport& report) {

@@ -23,7 +23,7 @@ struct AtlasReport {
 
 /// {"width", "height", "results": [{"scene", "segment", "preset", "psnr", "ssim", "flip",
 /// "flicker", "ghost_area", "recovery_frames", "sharpness", "ms", "frames": [{"frame", "rms",
-/// "flip"} …]} …]}; null where a measure does not apply.
+/// "flip"} …]} …]}, one result a line; null where a measure does not apply.
 std::string atlasJson(const AtlasReport& report);
 
 /// The same without frames; an empty field is null.
