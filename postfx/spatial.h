@@ -54,7 +54,7 @@ class SpatialFilter {
 };
 
 /// One pixel of SpatialEdges::geometry, the same value that SpatialFilter::run() writes.
-/// Reads up to 33 pixels around (x, y) along rows and columns.
+/// Reads up to 34 pixels around (x, y) along rows and columns.
 void spatialPixel(const SpatialInput& input, int x, int y, int rgb[3]);
 
 }  // namespace still

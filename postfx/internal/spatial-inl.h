@@ -34,54 +34,95 @@ HWY_INLINE Normals unpackNormals(V32 packed) {
     return {x, y, z};
 }
 
-/// isCrease(); equal normals are no crease anyhow.
-HWY_INLINE Mask32 areCreases(const Normals& a, const Normals& b) {
-    const V32 sum = hn::Add(hn::Add(hn::Abs(hn::Sub(a.x, b.x)), hn::Abs(hn::Sub(a.y, b.y))),
-                            hn::Abs(hn::Sub(a.z, b.z)));
-    return hn::Gt(sum, hn::Set(D32(), kCrease));
+/// normalDistance()
+HWY_INLINE V32 normalDistances(const Normals& a, const Normals& b) {
+    return hn::Add(hn::Add(hn::Abs(hn::Sub(a.x, b.x)), hn::Abs(hn::Sub(a.y, b.y))),
+                   hn::Abs(hn::Sub(a.z, b.z)));
 }
 
-/// A row of normals, or nothing.
 HWY_INLINE V32 loadNormal(const uint32_t* p) {
     return hn::BitCast(D32(), hn::LoadU(hn::Rebind<uint32_t, D32>(), p));
 }
 
-/// Adds crease bits where normals differ at all; flat surfaces take one comparison.
-HWY_INLINE V32 creaseBits(const uint32_t* here, const uint32_t* below) {
+/// Four pixels in a line, the edge being between the second and the third.
+struct Line {
+    const uint16_t* id[4];
+    const uint32_t* normal[4];
+};
+
+HWY_INLINE Mask32 sameSurfaces(const Line& line, int x, int i) {
     const D32 d;
-    const V32 n = loadNormal(here), right = loadNormal(here + 1), down = loadNormal(below);
-    const V32 zero = hn::Zero(d);
-    if (hn::AllTrue(d, hn::And(hn::Eq(n, right), hn::Eq(n, down)))) {
-        return zero;
+    const V32 different = hn::Xor(load16(line.id[i] + x), load16(line.id[i + 1] + x));
+    return hn::Eq(hn::And(different, hn::Set(d, kSurfaceMask)), hn::Zero(d));
+}
+
+/// LiveEdges::isSmooth() of the step from pixel i to i + 1.
+HWY_INLINE Mask32 areSmooth(const Line& line, int x, int i, const Normals& a, const Normals& b,
+                            V32 jump) {
+    static_assert(kCreaseRatio == 4);
+    const V32 bend = hn::ShiftLeft<2>(normalDistances(a, b));
+    return hn::Or(hn::Not(sameSurfaces(line, x, i)), hn::Not(hn::Gt(bend, jump)));
+}
+
+/// Creases between the second and the third pixel, whatever their surfaces.
+HWY_INLINE Mask32 creasesAt(const Line& line, int x) {
+    const D32 d;
+    const V32 second = loadNormal(line.normal[1] + x), third = loadNormal(line.normal[2] + x);
+    if (hn::AllTrue(d, hn::Eq(second, third))) {
+        return hn::MaskFromVec(hn::Zero(d));
     }
-    const Normals centre = unpackNormals(n);
-    const V32 right_bit =
-        hn::IfThenElseZero(areCreases(centre, unpackNormals(right)), hn::Set(d, kEdgeRight));
-    const V32 below_bit =
-        hn::IfThenElseZero(areCreases(centre, unpackNormals(down)), hn::Set(d, kEdgeBelow));
-    return hn::Or(right_bit, below_bit);
+    const Normals b = unpackNormals(second), c = unpackNormals(third);
+    const V32 jump = normalDistances(b, c);
+    const Mask32 large = hn::Gt(jump, hn::Set(d, kCrease));
+    if (hn::AllFalse(d, large)) {
+        return large;
+    }
+    const Normals a = unpackNormals(loadNormal(line.normal[0] + x));
+    const Normals e = unpackNormals(loadNormal(line.normal[3] + x));
+    return hn::And(large,
+                   hn::And(areSmooth(line, x, 0, a, b, jump), areSmooth(line, x, 2, c, e, jump)));
+}
+
+/// Edges between the second and the third pixel as `bit`.
+HWY_INLINE V32 edgesAt(const Line& line, int x, bool creases, uint8_t bit) {
+    const D32 d;
+    const Mask32 same = sameSurfaces(line, x, 1);
+    Mask32 edge = hn::Not(same);
+    if (creases) {
+        edge = hn::Or(edge, creasesAt(line, x));
+    }
+    return hn::IfThenElseZero(edge, hn::Set(d, bit));
+}
+
+/// Pixels (x + i · dx, y + i · dy) for i = −1 … 2. Rows outside repeat, which makes steps of
+/// nothing as isSmooth() wants it.
+HWY_INLINE Line lineAt(const SpatialInput& input, int y, int dx, int dy) {
+    Line line{};
+    for (int i = 0; i < 4; ++i) {
+        const int row = std::clamp(y + (i - 1) * dy, 0, input.id.height - 1);
+        line.id[i] = input.id.row(row) + (i - 1) * dx;
+        line.normal[i] = input.normal.empty() ? nullptr : input.normal.row(row) + (i - 1) * dx;
+    }
+    return line;
 }
 
 HWY_ATTR void markEdges(const SpatialInput& input, int y, uint8_t* marks) {
     const D32 d;
     const int width = input.id.width;
-    const int next = std::min(y + 1, input.id.height - 1);
-    const uint16_t *here = input.id.row(y), *below = input.id.row(next);
     const bool creases = !input.normal.empty();
-    const V32 surface = hn::Set(d, kSurfaceMask);
+    const Line across = lineAt(input, y, 1, 0), down = lineAt(input, y, 0, 1);
     for (int x = 0; x < width; x += int(hn::Lanes(d))) {
-        const V32 id = load16(here + x);
-        const V32 right = hn::And(hn::Xor(id, load16(here + x + 1)), surface);
-        const V32 down = hn::And(hn::Xor(id, load16(below + x)), surface);
-        const V32 zero = hn::Zero(d);
-        V32 bits = hn::Or(hn::IfThenZeroElse(hn::Eq(right, zero), hn::Set(d, kEdgeRight)),
-                          hn::IfThenZeroElse(hn::Eq(down, zero), hn::Set(d, kEdgeBelow)));
-        if (creases) {
-            bits = hn::Or(bits, creaseBits(input.normal.row(y) + x, input.normal.row(next) + x));
-        }
+        const V32 bits =
+            hn::Or(edgesAt(across, x, creases, kEdgeRight), edgesAt(down, x, creases, kEdgeBelow));
         hn::StoreU(hn::DemoteTo(D8(), bits), D8(), marks + x);
     }
-    marks[width - 1] &= uint8_t(~kEdgeRight);
+    // These have seen pixels from outside of the picture.
+    const Picture<LiveEdges> picture(input, {input});
+    for (int x : {0, width - 2, width - 1}) {
+        if (x >= 0) {
+            marks[x] = edgeMarks(picture, x, y);
+        }
+    }
 }
 
 /// Non-zero where an edge is within the 3×3 window. Reads one pixel to each side.

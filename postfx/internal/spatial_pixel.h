@@ -23,19 +23,37 @@ struct PlaneEdges {
     bool below(int x, int y) const { return (plane.row(y)[x] & kEdgeBelow) != 0; }
 };
 
-/// Edges found when asked for.
+/// Edges found when asked for. `x`, `y` and the neighbour right of it or below are inside.
 struct LiveEdges {
     const SpatialInput& input;
 
-    bool between(int x, int y, int other_x, int other_y) const {
-        if (((input.id.row(y)[x] ^ input.id.row(other_y)[other_x]) & kSurfaceMask) != 0) {
+    bool right(int x, int y) const { return between(x, y, 1, 0); }
+    bool below(int x, int y) const { return between(x, y, 0, 1); }
+
+  private:
+    bool sameSurface(int x, int y, int dx, int dy) const {
+        return ((input.id.row(y)[x] ^ input.id.row(y + dy)[x + dx]) & kSurfaceMask) == 0;
+    }
+    int bend(int x, int y, int dx, int dy) const {
+        return normalDistance(input.normal.row(y)[x], input.normal.row(y + dy)[x + dx]);
+    }
+    /// The next step in a direction is much smaller than `jump`, or leaves the surface or picture.
+    bool isSmooth(int x, int y, int dx, int dy, int jump) const {
+        const bool inside =
+            x + dx >= 0 && x + dx < input.id.width && y + dy >= 0 && y + dy < input.id.height;
+        return !inside || !sameSurface(x, y, dx, dy) || bend(x, y, dx, dy) * kCreaseRatio <= jump;
+    }
+    bool between(int x, int y, int dx, int dy) const {
+        if (!sameSurface(x, y, dx, dy)) {
             return true;
         }
-        return !input.normal.empty() &&
-               isCrease(input.normal.row(y)[x], input.normal.row(other_y)[other_x]);
+        if (input.normal.empty()) {
+            return false;
+        }
+        const int jump = bend(x, y, dx, dy);
+        return jump > kCrease && isSmooth(x, y, -dx, -dy, jump) &&
+               isSmooth(x + dx, y + dy, dx, dy, jump);
     }
-    bool right(int x, int y) const { return between(x, y, x + 1, y); }
-    bool below(int x, int y) const { return between(x, y, x, y + 1); }
 };
 
 /// The picture with its edges; outside the border pixels repeat.
@@ -94,7 +112,9 @@ End findEnd(const View& view, int u, int v, int step) {
         }
         const bool near_jog = view.jog(border, v), far_jog = view.jog(border, v + 1);
         if (near_jog || far_jog || !view.edge(at + step, v)) {
-            end.height_fx8 = 128 * (int(near_jog) - int(far_jog));
+            // A jog of two pixels or more is a corner, which a line through its middle would cut.
+            const bool corner = view.jog(border, near_jog ? v - 1 : v + 2);
+            end.height_fx8 = (corner ? 32 : 128) * (int(near_jog) - int(far_jog));
             return end;
         }
     }
@@ -110,6 +130,11 @@ inline int lineHeight(int left, int right, int length, int t_fx8) {
     const int from_left = std::max(whole_fx8 - 2 * t_fx8, 0);
     const int from_right = std::max(2 * t_fx8 - whole_fx8, 0);
     return floorDiv(left * from_left + right * from_right, whole_fx8);
+}
+
+/// The edge bits of a pixel, see spatial_rules.h.
+inline uint8_t edgeMarks(const Picture<LiveEdges>& picture, int x, int y) {
+    return uint8_t((picture.right(x, y) ? kEdgeRight : 0) | (picture.below(x, y) ? kEdgeBelow : 0));
 }
 
 /// What the two pixels of an edge take of each other, in 1/1024, and the edge's length in pixels;
@@ -217,7 +242,8 @@ int crowdMean(At&& at, int jitter_x_fx8, int jitter_y_fx8) {
 /// How far the crowd's mean replaces the lines, in 1/16: where edges are crowded (more than 5 of
 /// the 12 in the window) or shorter than 5 pixels.
 inline int crowding(const Window& window, const Shares& shares) {
-    return std::clamp(std::max((window.edges - 5) * 4, (5 - shares.length) * 5), 0, 16);
+    const int shortness = shares.length == 0 ? 8 : (5 - shares.length) * 5;
+    return std::clamp(std::max((window.edges - 4) * 4, shortness), 0, 16);
 }
 
 /// A channel around a pixel, up to two pixels away.

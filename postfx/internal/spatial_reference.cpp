@@ -9,8 +9,7 @@ namespace {
 void markEdges(const SpatialInput& input, int y, uint8_t* marks) {
     const Picture<LiveEdges> picture(input, {input});
     for (int x = 0; x < picture.width(); ++x) {
-        marks[x] = uint8_t((picture.right(x, y) ? kEdgeRight : 0) |
-                           (picture.below(x, y) ? kEdgeBelow : 0));
+        marks[x] = edgeMarks(picture, x, y);
     }
 }
 

@@ -18,8 +18,12 @@ constexpr uint8_t kEdgeBelow = 2;
 constexpr int kSearch = 32;
 
 /// Normals on the octahedron |x| + |y| + |z| = 32767: where they are farther apart than this
-/// (summed over the axes), a surface has a crease.
+/// (summed over the axes) a surface may have a crease.
 constexpr int kCrease = 4915;
+
+/// It has one if the steps before and after are this many times smaller: bumps of a normal map are
+/// no creases.
+constexpr int kCreaseRatio = 4;
 
 struct OctahedralNormal {
     int x, y, z;
@@ -35,13 +39,13 @@ constexpr OctahedralNormal unpackNormal(uint32_t packed) {
     return {x, y, z};
 }
 
-inline bool isCrease(uint32_t normal_a, uint32_t normal_b) {
+inline int normalDistance(uint32_t normal_a, uint32_t normal_b) {
     if (normal_a == normal_b) {
-        return false;
+        return 0;
     }
     const OctahedralNormal a = unpackNormal(normal_a);
     const OctahedralNormal b = unpackNormal(normal_b);
-    return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) > kCrease;
+    return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
 }
 
 /// Weights of the neighbours before and after on one axis, the centre has the rest.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "postfx/internal/spatial_pixel.h"
 #include "postfx/internal/spatial_rules.h"
 #include "rasterizer/internal/dispatch.h"
 
