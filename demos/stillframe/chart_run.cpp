@@ -84,7 +84,7 @@ Outcome<void> SegmentRun::makeReferences(const FileCache& cache, int threads) {
 
 void SegmentRun::turn(Contender& contender, int frame, bool with_errors, Workers& workers) {
     const bool compared = isCompared(segment_, frame);
-    if (!compared && !contender.mode->temporal()) {
+    if (!compared && contender.mode->anti_aliasing == AntiAliasing::ssaa) {
         return;
     }
     const double start_ms = nowMs();
