@@ -1,127 +1,147 @@
+// One frame: note what changed → every tile: keep its samples, sum what stands still → every tile
+// that is not settled: gather.
+
 #include "postfx/taa.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstring>
 #include <vector>
 
-#include "postfx/internal/history.h"
-#include "postfx/internal/resolve.h"
+#include "postfx/internal/kernels.h"
+#include "postfx/internal/rules.h"
+#include "postfx/spatial.h"
 
 namespace still {
 namespace {
 
-using taa::HistoryIn;
-using taa::HistoryOut;
-using taa::ResolveJob;
+using taa::Job;
+using taa::SlotOut;
+using taa::Stillness;
 using taa::TileRect;
-using taa::TileResult;
-using taa::TileWork;
 
-struct HistoryPlanes {
-    std::array<Image<uint16_t>, 3> mean;
-    std::array<Image<int8_t>, 3> rest;
-    Image<uint8_t> count;
-    Image<uint16_t> surface, depth, normal;
+struct SlotPlanes {
+    Image<uint32_t> red_green, blue_surface, depths, motion, owner;
+    int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
 
     void resize(int width, int height) {
-        for (int c = 0; c < 3; ++c) {
-            mean[size_t(c)].resize(width, height);
-            rest[size_t(c)].resize(width, height);
+        for (Image<uint32_t>* plane : {&red_green, &blue_surface, &depths, &motion, &owner}) {
+            plane->resize(width, height);
         }
-        count.resize(width, height);
-        surface.resize(width, height);
-        depth.resize(width, height);
-        normal.resize(width, height);
     }
-
-    HistoryOut pointers() {
-        HistoryOut p;
-        for (size_t c = 0; c < 3; ++c) {
-            p.mean[c] = mean[c].view().data;
-            p.rest[c] = rest[c].view().data;
-        }
-        p.count = count.view().data;
-        p.surface = surface.view().data;
-        p.depth = depth.view().data;
-        p.normal = normal.view().data;
-        return p;
+    SlotOut pointers() {
+        return {red_green.view().data, blue_surface.view().data, depths.view().data,
+                motion.view().data,    owner.view().data,        jitter_x_fx8,
+                jitter_y_fx8};
     }
 };
 
-HistoryIn readOnly(const HistoryOut& p) {
-    HistoryIn in;
-    for (size_t c = 0; c < 3; ++c) {
-        in.mean[c] = p.mean[c];
-        in.rest[c] = p.rest[c];
-    }
-    in.count = p.count;
-    in.surface = p.surface;
-    in.depth = p.depth;
-    in.normal = p.normal;
-    return in;
+taa::SlotIn readOnly(const SlotOut& p) {
+    return {p.red_green, p.blue_surface, p.depths,      p.motion,
+            p.owner,     p.jitter_x_fx8, p.jitter_y_fx8};
 }
 
 /// What is remembered of a tile between frames.
 struct TileMemory {
-    bool finished = false;  ///< every pixel had the cap's number of samples
-    bool changed = true;    ///< the last frame added samples
-    bool twin = false;      ///< both buffers hold the same tile
+    bool summed = false;    ///< its sums are of the present view
+    bool finished = false;  ///< … and complete
+    bool settled = false;   ///< … and all shown
+    bool changed = true;    ///< the last frame changed the picture
 };
 
-constexpr int kSurfaceWords = (int(kSurfaceMask) + 1) / 64;
-using SurfaceBits = std::array<uint64_t, size_t(kSurfaceWords)>;
-
-/// Marks the surfaces of one tile that are seen without the moved bit.
-void markResting(const GBuffer& gbuffer, const TileRect& rect, SurfaceBits& bits) {
-    const ImageView<const uint16_t> id = gbuffer.id.view();
-    uint16_t last = kMovedBit;
-    for (int y = rect.y0; y < rect.y1; ++y) {
-        const uint16_t* row = id.row(y);
-        for (int x = rect.x0; x < rect.x1; ++x) {
-            if (row[x] != last && (row[x] & kMovedBit) == 0) {
-                bits[row[x] >> 6] |= uint64_t{1} << (row[x] & 63);
-            }
-            last = row[x];
-        }
-    }
-}
+constexpr size_t kSurfaces = size_t(kSurfaceMask) + 1;
+constexpr uint8_t kLongAgo = 255;
 
 }  // namespace
 
 struct Taa::State {
-    std::array<HistoryPlanes, 2> history;
-    int shown = 0;  ///< index of the planes written last
+    std::vector<SlotPlanes> ring;
+    int cursor = 0;  ///< index of this frame's slot
+    int frames = 0;  ///< slots that belong to the present run of frames
+    std::array<Image<uint16_t>, 3> mean, shown;
+    std::array<Image<int8_t>, 3> rest;
+    Image<uint8_t> count, shown_count;
     int width = 0, height = 0;
     int tiles_x = 0;
-    std::vector<TileMemory> tiles;
-    std::vector<TileWork> work;
-    std::vector<SurfaceBits> resting;  ///< per worker; [0] becomes the union
     int sample_cap = 0;
-    bool has_history = false;
+    std::vector<TileMemory> tiles;
+    std::vector<uint8_t> change_age;  ///< empty until something changes
+    int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
+    SpatialFilter spatial;
 
     TileRect rectOf(int tile) const {
         const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
         return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
     }
 
-    void resize(const GBuffer& gbuffer) {
-        if (width == gbuffer.width() && height == gbuffer.height()) {
-            return;
-        }
+    void begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings);
+    bool noteChanges(const TaaFrame& frame);
+    bool disturbed(const GBuffer& gbuffer, int tile) const;
+    bool nothingToDo(const GBuffer& gbuffer, bool shading_changed, int cap) const;
+    Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
+    void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
+                   Workers& workers);
+    void keepAndSum(const GBuffer& gbuffer, const Job& job, const taa::TileKernels& kernels,
+                    bool shading_changed, int tile);
+};
+
+/// Makes the planes fit; a changed size, a changed ring and a reset leave nothing of the past.
+void Taa::State::begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings) {
+    const bool resized = width != gbuffer.width() || height != gbuffer.height();
+    if (resized || frame.reset || ring.size() != size_t(settings.ring)) {
+        frames = 0;
+        since_change = settings.ring;
+    }
+    if (resized || ring.size() != size_t(settings.ring)) {
         width = gbuffer.width();
         height = gbuffer.height();
         tiles_x = gbuffer.tiles_x;
-        history[0].resize(width, height);
-        history[1].resize(width, height);
-        has_history = false;
+        cursor = 0;
+        ring.resize(size_t(settings.ring));
+        for (SlotPlanes& slot : ring) {
+            slot.resize(width, height);
+        }
+        for (size_t c = 0; c < 3; ++c) {
+            mean[c].resize(width, height);
+            rest[c].resize(width, height);
+            shown[c].resize(width, height);
+        }
+        count.resize(width, height);
+        shown_count.resize(width, height);
     }
+    if (frames == 0) {
+        tiles.assign(gbuffer.tiles.size(), TileMemory{});
+    }
+}
 
-    bool disturbed(const GBuffer& gbuffer, int tile) const;
-    void chooseWork(const GBuffer& gbuffer, const TaaFrame& frame, int cap);
-    const uint64_t* findResting(const GBuffer& gbuffer, Workers& workers);
-    ResolveJob makeJob(const GBuffer& gbuffer, const TaaFrame& frame, int cap);
-};
+/// Keeps for each surface how long ago its shading changed. Returns whether any changed now.
+bool Taa::State::noteChanges(const TaaFrame& frame) {
+    const bool now = frame.shading_changed ||
+                     std::any_of(frame.changed_surfaces.begin(), frame.changed_surfaces.end(),
+                                 [](uint64_t word) { return word != 0; });
+    if (!now && since_change >= int(ring.size())) {
+        return false;
+    }
+    if (change_age.empty() || since_change >= int(ring.size())) {
+        change_age.assign(kSurfaces, kLongAgo);
+    }
+    for (uint8_t& age : change_age) {
+        age = age < kLongAgo - 1 ? uint8_t(age + 1) : kLongAgo;
+    }
+    if (frame.shading_changed) {
+        std::fill(change_age.begin(), change_age.end(), uint8_t{0});
+    }
+    for (size_t word = 0; word < frame.changed_surfaces.size(); ++word) {
+        for (size_t bit = 0; bit < 64; ++bit) {
+            if (((frame.changed_surfaces[word] >> bit) & 1) != 0) {
+                change_age[word * 64 + bit] = 0;
+            }
+        }
+    }
+    since_change = now ? 0 : since_change + 1;
+    return now;
+}
 
 /// Something moved in the tile or in one of its neighbours, whose pixels reach into its windows.
 bool Taa::State::disturbed(const GBuffer& gbuffer, int tile) const {
@@ -135,42 +155,16 @@ bool Taa::State::disturbed(const GBuffer& gbuffer, int tile) const {
     return moved;
 }
 
-void Taa::State::chooseWork(const GBuffer& gbuffer, const TaaFrame& frame, int cap) {
-    work.assign(gbuffer.tiles.size(), TileWork::general);
-    tiles.resize(gbuffer.tiles.size());
-    for (size_t i = 0; i < work.size(); ++i) {
-        if (!has_history) {
-            work[i] = TileWork::fresh;
-        } else if (!frame.shading_changed && !disturbed(gbuffer, int(i))) {
-            const bool idle = tiles[i].finished && tiles[i].twin && cap == sample_cap;
-            work[i] = idle ? TileWork::idle : TileWork::still;
-        }
-    }
+bool Taa::State::nothingToDo(const GBuffer& gbuffer, bool shading_changed, int cap) const {
+    return frames > 0 && !shading_changed && cap == sample_cap &&
+           std::all_of(tiles.begin(), tiles.end(),
+                       [](const TileMemory& t) { return t.summed && t.finished; }) &&
+           std::all_of(gbuffer.tiles.begin(), gbuffer.tiles.end(),
+                       [](const TileFacts& facts) { return facts.still(); });
 }
 
-/// Surfaces that stand still, seen anywhere in the picture. A stored surface that is not seen any
-/// more may have moved, so only what is seen counts. Null when nothing moves at all.
-const uint64_t* Taa::State::findResting(const GBuffer& gbuffer, Workers& workers) {
-    if (std::none_of(gbuffer.tiles.begin(), gbuffer.tiles.end(),
-                     [](const TileFacts& facts) { return facts.moved; })) {
-        return nullptr;
-    }
-    resting.assign(size_t(workers.threads()), SurfaceBits{});
-    workers.parallelFor(int(gbuffer.tiles.size()), 1, [&](int begin, int end, int worker) {
-        for (int tile = begin; tile < end; ++tile) {
-            markResting(gbuffer, rectOf(tile), resting[size_t(worker)]);
-        }
-    });
-    for (size_t w = 1; w < resting.size(); ++w) {
-        for (size_t i = 0; i < resting[0].size(); ++i) {
-            resting[0][i] |= resting[w][i];
-        }
-    }
-    return resting[0].data();
-}
-
-ResolveJob Taa::State::makeJob(const GBuffer& gbuffer, const TaaFrame& frame, int cap) {
-    ResolveJob job;
+Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
+    Job job;
     job.width = width;
     job.height = height;
     job.stride = gbuffer.red.view().stride;
@@ -182,12 +176,55 @@ ResolveJob Taa::State::makeJob(const GBuffer& gbuffer, const TaaFrame& frame, in
     job.now.normal = gbuffer.planes.normal ? gbuffer.normal.view().data : nullptr;
     job.now.motion = gbuffer.motion.view().data;
     job.now.depth_before = gbuffer.depth_before.view().data;
-    job.before = readOnly(history[size_t(shown)].pointers());
-    job.next = history[size_t(1 - shown)].pointers();
-    job.sample_cap = cap;
+    job.frames = frames;
+    for (int k = 0; k < frames; ++k) {
+        const int slot = (cursor + settings.ring - k) % settings.ring;
+        job.slot[k] = readOnly(ring[size_t(slot)].pointers());
+    }
+    job.record = ring[size_t(cursor)].pointers();
+    for (size_t c = 0; c < 3; ++c) {
+        job.sums.mean[c] = mean[c].view().data;
+        job.sums.rest[c] = rest[c].view().data;
+        job.shown[c] = shown[c].view().data;
+    }
+    job.sums.count = count.view().data;
+    job.shown_count = shown_count.view().data;
+    job.change_age = since_change < settings.ring ? change_age.data() : nullptr;
+    job.sample_cap = settings.sample_cap;
+    job.settled = std::min(taa::kSettled, settings.sample_cap);
     job.camera_moved = !gbuffer.tiles.empty() && gbuffer.tiles[0].camera_moved;
-    job.shading_changed = frame.shading_changed;
     return job;
+}
+
+void Taa::State::keepAndSum(const GBuffer& gbuffer, const Job& job, const taa::TileKernels& kernels,
+                            bool shading_changed, int tile) {
+    TileMemory& memory = tiles[size_t(tile)];
+    kernels.record(job, rectOf(tile));
+    if (job.camera_moved && frames > 1) {
+        memory = {};
+        return;
+    }
+    const bool tested = frames > 1 && (shading_changed || disturbed(gbuffer, tile));
+    if (!tested && memory.summed && memory.finished && job.sample_cap == sample_cap) {
+        memory.changed = false;
+        return;
+    }
+    const taa::SumsResult result = kernels.accumulate(
+        job, rectOf(tile), tested ? Stillness::tested : Stillness::all, !memory.summed);
+    memory = {.summed = true,
+              .finished = result.finished,
+              .settled = result.settled,
+              .changed = result.changed || !result.settled};
+}
+
+/// Without a past there is only this frame, filtered in space.
+void Taa::State::showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
+                           Workers& workers) {
+    spatial.run(spatialInput(gbuffer, frame.jitter_x_fx8, frame.jitter_y_fx8), {.simd = simd},
+                {shown[0].view(), shown[1].view(), shown[2].view()}, workers);
+    for (int y = 0; y < height; ++y) {
+        std::memset(shown_count.view().row(y), 1, size_t(width));
+    }
 }
 
 Taa::Taa() : state_(std::make_unique<State>()) {}
@@ -197,42 +234,54 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
                   Workers& workers) {
     assert(gbuffer.planes.motion);
     assert(settings.sample_cap >= 1 && settings.sample_cap <= 255);
+    assert(settings.ring >= 1 && settings.ring <= kMaxRing);
     State& s = *state_;
-    s.resize(gbuffer);
-    s.has_history = s.has_history && !frame.reset;
-    s.chooseWork(gbuffer, frame, settings.sample_cap);
-    ResolveJob job = s.makeJob(gbuffer, frame, settings.sample_cap);
-    job.at_rest = s.has_history ? s.findResting(gbuffer, workers) : nullptr;
-    const taa::TileKernel kernel = taa::tileKernel(settings.simd);
-    workers.parallelFor(int(s.work.size()), 1, [&](int begin, int end, int) {
+    s.begin(gbuffer, frame, settings);
+    const bool shading_changed = s.noteChanges(frame);
+    if (s.nothingToDo(gbuffer, shading_changed, settings.sample_cap)) {
+        for (TileMemory& tile : s.tiles) {
+            tile.changed = false;
+        }
+        return;
+    }
+    s.cursor = (s.cursor + 1) % settings.ring;
+    s.frames = std::min(s.frames + 1, settings.ring);
+    s.ring[size_t(s.cursor)].jitter_x_fx8 = frame.jitter_x_fx8;
+    s.ring[size_t(s.cursor)].jitter_y_fx8 = frame.jitter_y_fx8;
+    const Job job = s.makeJob(gbuffer, settings);
+    const taa::TileKernels kernels = taa::tileKernels(settings.simd);
+    workers.parallelFor(int(s.tiles.size()), 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
-            TileMemory& memory = s.tiles[size_t(tile)];
-            if (s.work[size_t(tile)] == TileWork::idle) {
-                continue;
-            }
-            const TileResult result = kernel(job, s.rectOf(tile), s.work[size_t(tile)]);
-            memory = {result.finished, result.changed,
-                      s.work[size_t(tile)] == TileWork::still && !result.changed};
+            s.keepAndSum(gbuffer, job, kernels, shading_changed, tile);
         }
     });
-    s.shown = 1 - s.shown;
-    s.has_history = true;
     s.sample_cap = settings.sample_cap;
+    if (s.frames == 1) {
+        s.showFirst(gbuffer, frame, settings.simd, workers);
+        return;
+    }
+    workers.parallelFor(int(s.tiles.size()), 1, [&](int begin, int end, int) {
+        for (int tile = begin; tile < end; ++tile) {
+            if (!s.tiles[size_t(tile)].settled) {
+                kernels.gather(job, s.rectOf(tile), s.tiles[size_t(tile)].summed);
+            }
+        }
+    });
 }
 
 ColourPlanes Taa::colour() const {
-    const HistoryPlanes& h = state_->history[size_t(state_->shown)];
-    return {h.mean[0].view(), h.mean[1].view(), h.mean[2].view()};
+    const auto& shown = state_->shown;
+    return {shown[0].view(), shown[1].view(), shown[2].view()};
 }
 
 ImageView<const uint8_t> Taa::sampleCount() const {
-    return state_->history[size_t(state_->shown)].count.view();
+    return state_->shown_count.view();
 }
 
 bool Taa::converged() const {
-    return state_->has_history &&
+    return state_->frames > 0 &&
            std::all_of(state_->tiles.begin(), state_->tiles.end(),
-                       [](const TileMemory& t) { return t.finished && !t.changed; });
+                       [](const TileMemory& t) { return t.summed && t.finished && !t.changed; });
 }
 
 }  // namespace still

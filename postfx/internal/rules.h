@@ -1,39 +1,65 @@
 #pragma once
-// The resolve's arithmetic, one pixel at a time, in integers. The scalar kernel is built from these
-// and the SIMD kernels must give the same numbers. How the constants were found: postfx/README.md.
+// The resolve's arithmetic, one pixel at a time, in integers. The scalar kernels are built from
+// these and the SIMD kernels must give the same numbers. How the constants were found:
+// postfx/README.md.
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 
+#include "postfx/taa.h"
 #include "rasterizer/fixed.h"
 
 namespace still::taa {
 
 /// Stored depth may differ from the expected one by this much (1 = 1/4096 … 1/2048 relative) …
-constexpr int kDepthTolerance = 32;
-/// … plus this multiple of the surface's own step towards its nearest neighbour: one for the
-/// jitter, one for the fraction of the motion, one for an owner that sits at its surface's rim.
+constexpr int kDepthTolerance = 48;
+/// … plus this multiple of the surface's own step towards its nearest neighbour …
 constexpr int kSlopeFactor = 3;
+/// … plus an eighth of the change that is expected over the frames in between.
+constexpr int kStepShift = 3;
 
-/// Bilinear weights sum to 65536. History is taken when at least half of it is trusted.
-constexpr uint32_t kFullWeight = 65536;
-constexpr uint32_t kMinWeight = 32768;
+/// A sample of another surface counts for a pixel when the two surfaces have slid over each other
+/// by at most this much since (1/256 pixel, larger axis).
+constexpr int kMaxSlide = 128;
+/// Two surfaces in a window that move apart by more than this per frame (larger axis) are followed
+/// along their own ways.
+constexpr int kApart = 8;
+/// A sample of the farther one that is seen along the nearer one's way shows a wrong place when
+/// they have slid by more than this since (1/256 pixel, larger axis).
+constexpr int kMaxLag = 64;
 
-/// Samples that history may stand for when its validity is only likely.
-constexpr int kSuspectCount = 6;
+/// A still pixel is shown as the mean of its samples from so many samples on.
+constexpr int kSettled = 8;
 
-/// The same where a window shows two surfaces that move apart by at least kApart (1/256 pixel, both
-/// axes together): part of what the owner's motion brings along belongs to the other surface.
-constexpr int kEdgeCount = 4;
-constexpr int kApart = 64;
+/// Samples of a moved surface whose normals differ by more than about 10° (cosine² < 31/32) were
+/// lit differently.
+constexpr bool similarlyLit(int dot, int square_a, int square_b) {
+    return dot > 0 && (dot >> 3) * (dot >> 3) >= ((square_a * 31) >> 8) * (square_b >> 3);
+}
 
-/// Trusted pixels that a 3×3 window needs, and the samples that its mean stands for.
-constexpr int kWindowTaps = 5;
-constexpr int kWindowCount = 1;
+/// Octahedral normal of the G-buffer (2 × snorm16) cut down to 2 × 8 bit.
+constexpr uint32_t compactNormal(uint32_t packed) {
+    return ((packed >> 8) & 0x00FFu) | ((packed >> 16) & 0xFF00u);
+}
+struct SmallNormal {
+    int x, y, z;
+};
+constexpr SmallNormal decodeNormal(uint32_t compact) {
+    int x = int8_t(compact & 0xFF);
+    int y = int8_t((compact >> 8) & 0xFF);
+    const int z = 127 - (x < 0 ? -x : x) - (y < 0 ? -y : y);
+    const int fold = z < 0 ? -z : 0;
+    x += x < 0 ? fold : -fold;
+    y += y < 0 ? fold : -fold;
+    return {x, y, z};
+}
+constexpr int dotOf(SmallNormal a, SmallNormal b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
-/// Resampled history carries this many fraction bits below fx12.
-constexpr int kFractionBits = 8;
-
-/// One channel of a pixel: see HistoryPointers.
+/// One channel of a pixel: see StillSums.
 struct Sum {
     int mean = 0, rest = 0;
 };
@@ -46,67 +72,97 @@ constexpr Sum addSample(Sum sum, int count, int sample) {
     return {sum.mean + step, excess - step * grown};
 }
 
-/// A resampled value with kFractionBits, standing for `count` samples.
-constexpr Sum sumOf(int value, int count) {
-    const int mean = roundShift(value, kFractionBits);
-    return {mean, roundShift((value - (mean << kFractionBits)) * count, kFractionBits)};
+/// Weight of the right (lower) one of two neighbouring samples, 0 … kAxisWeight, for a pixel centre
+/// that lies f/256 between them: a box of one pixel, its sides softened to ramps over 0.2 … 0.8.
+constexpr int kAxisWeight = 16;
+constexpr int axisWeight(int f) {
+    return std::clamp(((f - 51) * 53 + 256) >> 9, 0, kAxisWeight);
 }
+/// What a frame's four samples around a pixel weigh together.
+constexpr int kFrameWeight = kAxisWeight * kAxisWeight;
 
-/// Weights of the taps −1, 0, 1, 2 at fraction f/256; they sum to 1024. Keys' cubic with slope
-/// −5/8: a little sharper than Catmull-Rom (−1/2), because history passes through it every frame.
-struct CubicWeights {
-    int w[4];
+/// Moments of the accepted samples' places around the pixel's centre: w, e in 1/64 pixel.
+struct Moments {
+    int w = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+
+    constexpr void add(int weight, int ex, int ey) {
+        w += weight;
+        x += weight * ex;
+        y += weight * ey;
+        xx += weight * ex * ex;
+        xy += weight * ex * ey;
+        yy += weight * ey * ey;
+    }
 };
-constexpr int kCubicBits = 10;
-constexpr CubicWeights cubicWeights(int f) {
-    const int f1 = f << 16;  // fractions to the powers 1, 2, 3 in 2^-24
-    const int f2 = f * f << 8;
-    const int f3 = f * f * f;
-    const int before = roundShift(-5 * (f3 - 2 * f2 + f1), 17);
-    const int right = roundShift(14 * f2 - 11 * f3 + 5 * f1, 17);
-    const int after = roundShift(5 * (f3 - f2), 17);
-    return {{before, (1 << kCubicBits) - before - right - after, right, after}};
+/// 1/256 pixel to 1/64.
+constexpr int placeOf(int e_fx8) {
+    return e_fx8 >> 2;
 }
 
-/// Rows of the 4×4 filter are kept with 3 fraction bits, so that the columns fit in 32 bits.
-constexpr int kCubicRowShift = kCubicBits - 3;
-constexpr int kCubicColumnShift = kCubicBits + 3 - kFractionBits;
+/// floor(2^16 / i) for 256 … 511.
+constexpr std::array<uint16_t, 256> makeSmallReciprocals() {
+    std::array<uint16_t, 256> table{};
+    for (int i = 0; i < 256; ++i) {
+        table[size_t(i)] = uint16_t(65536 / (256 + i));
+    }
+    return table;
+}
+inline constexpr std::array<uint16_t, 256> kSmallReciprocals = makeSmallReciprocals();
 
-/// Octahedral normal of the G-buffer (2 × snorm16) cut down to 2 × 8 bit.
-constexpr uint16_t compactNormal(uint32_t packed) {
-    return uint16_t(((packed >> 8) & 0x00FFu) | ((packed >> 16) & 0xFF00u));
+/// Samples lie unevenly around the centre; giving each the weight w · (1 − tilt · e) moves their
+/// centre of gravity onto the pixel's: the weights of a plane fitted through the samples, taken at
+/// the centre. Q14 per 1/64 pixel; |x| + |y| ≤ kMaxTilt keeps all weights positive.
+struct Tilt {
+    int x = 0, y = 0;
+};
+constexpr int kTiltBits = 14;
+constexpr int kMaxTilt = 298;
+/// Part of the weight that pulls the tilt towards none (squared 1/64 pixels): 0.04 pixel².
+constexpr int kRidge = 164;
+
+/// nx / det in Q10, |result| < 2^14; det ≥ 256.
+constexpr int tiltQuotient(int nx, int det, int shift) {
+    const int small = std::clamp(nx >> shift, -16384, 16383);
+    return (small * kSmallReciprocals[size_t((det >> shift) - 256)]) >> 6;
 }
 
-/// True when two compact normals differ by less than about 37° (cosine² ≥ 5/8).
-constexpr bool similarNormals(uint16_t a, uint16_t b) {
-    struct Vector {
-        int x, y, z;
-    };
-    const auto decode = [](uint16_t n) {
-        int x = int8_t(n & 0xFF);
-        int y = int8_t(n >> 8);
-        const int z = 127 - (x < 0 ? -x : x) - (y < 0 ? -y : y);
-        const int fold = z < 0 ? -z : 0;
-        x += x < 0 ? fold : -fold;
-        y += y < 0 ? fold : -fold;
-        return Vector{x, y, z};
-    };
-    const Vector p = decode(a);
-    const Vector q = decode(b);
-    const int dot = p.x * q.x + p.y * q.y + p.z * q.z;
-    const int pp = p.x * p.x + p.y * p.y + p.z * p.z;
-    const int qq = q.x * q.x + q.y * q.y + q.z * q.z;
-    return dot > 0 && (dot >> 3) * (dot >> 3) >= ((pp * 5) >> 6) * (qq >> 3);
+constexpr Tilt tiltOf(const Moments& m) {
+    const int ridge = ((m.w * kRidge) >> 8) + 16;
+    const int a = (m.xx >> 8) + ridge;
+    const int b = m.xy >> 8;
+    const int d = (m.yy >> 8) + ridge;
+    const int x = m.x >> 4, y = m.y >> 4;
+    const int det = a * d - b * b;
+    const int shift = int(std::bit_width(uint32_t(det))) - 9;
+    Tilt tilt{tiltQuotient(d * x - b * y, det, shift), tiltQuotient(a * y - b * x, det, shift)};
+    for (int i = 0; i < 6; ++i) {
+        const bool steep =
+            (tilt.x < 0 ? -tilt.x : tilt.x) + (tilt.y < 0 ? -tilt.y : tilt.y) > kMaxTilt;
+        tilt.x = steep ? tilt.x >> 1 : tilt.x;
+        tilt.y = steep ? tilt.y >> 1 : tilt.y;
+    }
+    return tilt;
 }
 
-/// Most samples that history may stand for after it was resampled: the more the filter blurs, the
-/// sooner new samples must replace the old ones. 3 … 19.
-constexpr int resampledCount(int blur) {
-    return 3 + 16 / (blur + 1);
+constexpr int tiltedWeight(int weight, Tilt tilt, int ex, int ey) {
+    const int factor = (1 << kTiltBits) - tilt.x * ex - tilt.y * ey;
+    return (weight * factor + (1 << (kTiltBits - 1))) >> kTiltBits;
 }
-/// At fraction (fx, fy)/256.
-constexpr int resampledCount(int fx, int fy) {
-    return resampledCount((fx * (256 - fx) + fy * (256 - fy)) >> 8);  // 0 … 128
+
+/// floor(2^32 / n) + 1 for 2 … 8191; 0 and 1 are 0.
+constexpr int kMaxTotal = 2 * kFrameWeight * kMaxRing;
+constexpr std::array<uint32_t, size_t(kMaxTotal) + 1> makeReciprocals() {
+    std::array<uint32_t, size_t(kMaxTotal) + 1> table{};
+    for (size_t n = 2; n < table.size(); ++n) {
+        table[n] = uint32_t((uint64_t{1} << 32) / n + 1);
+    }
+    return table;
+}
+alignas(64) inline constexpr auto kReciprocals = makeReciprocals();
+
+/// (sum + total / 2) / total, by the table.
+constexpr int weightedMean(uint32_t sum, int total) {
+    return int((uint64_t(sum + uint32_t(total) / 2) * kReciprocals[size_t(total)]) >> 32);
 }
 
 }  // namespace still::taa

@@ -1,0 +1,82 @@
+// Sums of still pixels, one pixel after the other: the truth that accumulate-inl.h is tested
+// against.
+
+#include "postfx/internal/accumulate.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "postfx/internal/rules.h"
+
+namespace still::taa {
+namespace {
+
+bool disturbs(const Job& job, uint16_t id) {
+    return (id & kMovedBit) != 0 ||
+           (job.change_age != nullptr && job.change_age[id & kSurfaceMask] == 0);
+}
+
+void show(const Job& job, ptrdiff_t at, int count) {
+    for (int c = 0; c < 3; ++c) {
+        job.shown[c][at] = job.sums.mean[c][at];
+    }
+    job.shown_count[at] = uint8_t(count);
+}
+
+}  // namespace
+
+void disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) noexcept {
+    const int width = tile.x1 - tile.x0;
+    std::memset(flags, 0, size_t(width));
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
+        const uint16_t* row = job.now.id + j * job.stride;
+        for (int x = std::max(tile.x0 - 1, 0); x < std::min(tile.x1 + 1, job.width); ++x) {
+            if (!disturbs(job, row[x])) {
+                continue;
+            }
+            const int first = std::max(x - 1 - tile.x0, 0);
+            const int last = std::min(x + 1 - tile.x0, width - 1);
+            for (int i = first; i <= last; ++i) {
+                flags[i] = 1;
+            }
+        }
+    }
+}
+
+SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillness stillness,
+                                   bool restart) noexcept {
+    SumsResult result;
+    uint8_t disturbed[kTileSize] = {};
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        if (stillness == Stillness::tested) {
+            disturbedRow(job, tile, y, disturbed);
+        }
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const ptrdiff_t at = y * job.stride + x;
+            int count = restart ? 0 : job.sums.count[at];
+            if (disturbed[x - tile.x0] != 0) {
+                result.changed |= count != 0;
+                count = 0;
+            } else if (count < job.sample_cap) {
+                for (int c = 0; c < 3; ++c) {
+                    const Sum past =
+                        count == 0 ? Sum{} : Sum{job.sums.mean[c][at], job.sums.rest[c][at]};
+                    const Sum sum = addSample(past, count, job.now.colour[c][at]);
+                    job.sums.mean[c][at] = uint16_t(sum.mean);
+                    job.sums.rest[c][at] = int8_t(sum.rest);
+                }
+                ++count;
+                result.changed = true;
+                if (count >= job.settled) {
+                    show(job, at, count);
+                }
+            }
+            job.sums.count[at] = uint8_t(count);
+            result.settled &= count >= job.settled;
+            result.finished &= count >= job.sample_cap;
+        }
+    }
+    return result;
+}
+
+}  // namespace still::taa

@@ -1,0 +1,4 @@
+#include "postfx/internal/kernels.h"
+namespace still::taa {
+TileKernels tileKernels(SimdTarget) { return {}; }
+}
