@@ -81,6 +81,7 @@ std::optional<std::string> FileCache::load(uint64_t key) const {
 }
 
 Outcome<void> FileCache::store(uint64_t key, std::string_view bytes) const {
+    const std::lock_guard lock(*storing_);
     return OutputFile::create(pathOf(key), *interruption_).and_then([&](OutputFile file) {
         const std::string digits = hex(hashBytes(bytes));
         std::fwrite(digits.data(), 1, digits.size(), file.stream());

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +38,8 @@ class FileCache {
 
     std::filesystem::path folder_;
     Interruption* interruption_;
+    /// An OutputFile's temporary name is only safe from other processes.
+    std::unique_ptr<std::mutex> storing_ = std::make_unique<std::mutex>();
 };
 
 /// Makes a folder and those above it.

@@ -2,11 +2,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "demos/stillframe/cell_store.h"
 #include "demos/stillframe/error_crop.h"
 #include "demos/stillframe/file_cache.h"
+#include "rasterizer/workers.h"
 #include "tests/cli/shell.h"
 #include "tests/support/data_path.h"
 
@@ -67,6 +69,7 @@ TEST_CASE("atlas: a run writes a page, JSON and CSV, and prints the same JSON", 
             std::filesystem::resize_file(folder.path() / "cache" / name, 40);
         }
         const Ran again = shell(folder.path(), kSmall);
+        INFO(again.err);
         CHECK(again.code == 0);
         CHECK(contentsOf(out / "atlas.csv").size() > 200);
     }
@@ -134,6 +137,21 @@ TEST_CASE("file cache: what is stored is loaded, what is damaged is not there", 
     REQUIRE(names.size() == 1);
     std::filesystem::resize_file(folder.path() / "a/b" / names[0], 20);
     CHECK_FALSE(cache->load(7).has_value());
+}
+
+TEST_CASE("file cache: several threads may store at the same time", "[cli]") {
+    const TempFolder folder;
+    command::Interruption interruption;
+    const auto cache = command::FileCache::open(folder.path().string(), interruption);
+    REQUIRE(cache.has_value());
+    constexpr int kStores = 200;
+    std::vector<uint8_t> stored(kStores);
+    Workers workers(4);
+    workers.parallelFor(kStores, 1, [&](int begin, int, int) {
+        stored[size_t(begin)] = cache->store(uint64_t(begin % 3), "bytes").has_value();
+    });
+    CHECK(std::count(stored.begin(), stored.end(), 1) == kStores);
+    CHECK(filesIn(folder.path()).size() == 3);
 }
 
 TEST_CASE("cell store: measures come back as they went, also those that do not apply", "[cli]") {
