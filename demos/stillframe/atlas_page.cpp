@@ -30,7 +30,7 @@ tbody th { position: sticky; left: 0; z-index: 1; background: #fff; text-align: 
 tbody th small { font-weight: 400; color: #5a646e; }
 td { padding: 0; }
 td button { font: 13px/1 system-ui, sans-serif; font-variant-numeric: tabular-nums; border: 0;
-  width: 4.1em; height: 2.3em; cursor: pointer; color: #14181c; border-radius: 0; }
+  width: 4.7em; height: 2.3em; padding: 0; cursor: pointer; color: #14181c; border-radius: 0; }
 td button.best { font-weight: 700; outline: 2px solid #14181c; outline-offset: -2px; }
 td button:focus-visible { outline: 3px solid #0a58ca; }
 @media (max-width: 600px) {
