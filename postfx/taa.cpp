@@ -51,7 +51,7 @@ struct TileMemory {
 };
 
 constexpr size_t kSurfaces = size_t(kSurfaceMask) + 1;
-constexpr uint8_t kLongAgo = 255;
+constexpr uint32_t kLongAgo = 255;
 
 }  // namespace
 
@@ -66,7 +66,7 @@ struct Taa::State {
     int tiles_x = 0;
     int sample_cap = 0;
     std::vector<TileMemory> tiles;
-    std::vector<uint8_t> change_age;  ///< empty until something changes
+    std::vector<uint32_t> change_age;  ///< empty until something changes
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     SpatialFilter spatial;
 
@@ -126,11 +126,11 @@ bool Taa::State::noteChanges(const TaaFrame& frame) {
     if (change_age.empty() || since_change >= int(ring.size())) {
         change_age.assign(kSurfaces, kLongAgo);
     }
-    for (uint8_t& age : change_age) {
-        age = age < kLongAgo - 1 ? uint8_t(age + 1) : kLongAgo;
+    for (uint32_t& age : change_age) {
+        age = age < kLongAgo - 1 ? age + 1 : kLongAgo;
     }
     if (frame.shading_changed) {
-        std::fill(change_age.begin(), change_age.end(), uint8_t{0});
+        std::fill(change_age.begin(), change_age.end(), 0u);
     }
     for (size_t word = 0; word < frame.changed_surfaces.size(); ++word) {
         for (size_t bit = 0; bit < 64; ++bit) {

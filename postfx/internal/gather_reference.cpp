@@ -107,7 +107,7 @@ Window lookAround(const Job& job, int x, int y) {
 bool staleShading(const Job& job, const Window& window, int k, Place place, const SlotIn& slot,
                   ptrdiff_t at) {
     const int surface = highHalf(slot.blue_surface[at]);
-    if (job.change_age != nullptr && k > job.change_age[surface]) {
+    if (job.change_age != nullptr && uint32_t(k) > job.change_age[surface]) {
         return true;
     }
     if (!window.moved || place != Place::same || window.normal == 0) {

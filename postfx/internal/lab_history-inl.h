@@ -83,7 +83,8 @@ HWY_INLINE Guides loadStrip(const GuideStrip& strip, int i) {
 
 /// The best of each column of three. Columns outside the picture never win.
 template <class Source>
-HWY_INLINE void fillGuides(const ResolveJob& job, const TileRect& tile, int y, GuideStrip& strip) {
+STILL_LAB_PHASE void fillGuides(const ResolveJob& job, const TileRect& tile, int y,
+                                GuideStrip& strip) {
     const TaaPolicy& p = Source::of(job);
     const int lanes = int(hn::Lanes(D32())), columns = tile.x1 - tile.x0;
     for (int i = kMaxLanes - lanes; i < kMaxLanes + columns + 1; i += lanes) {
@@ -117,8 +118,8 @@ HWY_INLINE VI32 compactNormal(VI32 packed) {
 
 /// Guides of the pixels at x …, in the forms that history keeps.
 template <class Source>
-HWY_INLINE Guides findGuide(const ResolveJob& job, const TileRect& tile, const GuideStrip& strip,
-                            int x, int y) {
+STILL_LAB_PHASE Guides findGuide(const ResolveJob& job, const TileRect& tile,
+                                 const GuideStrip& strip, int x, int y) {
     const TaaPolicy& p = Source::of(job);
     Guides g;
     if (p.dilation == Dilation::centre) {
@@ -180,7 +181,7 @@ struct Places {
 };
 
 template <class Source>
-HWY_INLINE Places findPlaces(const ResolveJob& job, const Guides& guides, int x, int y) {
+STILL_LAB_PHASE Places findPlaces(const ResolveJob& job, const Guides& guides, int x, int y) {
     const VI32 x0 = hn::ShiftLeft<8>(hn::Iota(DI32(), x));
     const VI32 motion_x = motionX(guides.motion);
     const VI32 px = hn::Add(x0, motion_x), py = hn::Add(all(y * 256), motionY(guides.motion));
@@ -226,8 +227,8 @@ HWY_INLINE void atSpot(const ResolveJob& job, MaskI found, VI32 column, VI32 row
 
 /// How many of the tests of depth, normal and surface fail at one tap.
 template <class Source, class S>
-HWY_INLINE VI32 failedTests(const ResolveJob& job, const Guides& guides, const S& spot,
-                            ptrdiff_t offset) {
+STILL_LAB_PHASE VI32 failedTests(const ResolveJob& job, const Guides& guides, const S& spot,
+                                 ptrdiff_t offset) {
     const TaaPolicy& p = Source::of(job);
     VI32 failed = zero();
     if (needsDepth(p)) {
@@ -250,8 +251,8 @@ HWY_INLINE VI32 failedTests(const ResolveJob& job, const Guides& guides, const S
 }
 
 template <class S>
-HWY_INLINE VI32 bilinear(const uint32_t* plane, ptrdiff_t stride, const S& spot,
-                         const Places& places) {
+STILL_LAB_PHASE VI32 bilinear(const uint32_t* plane, ptrdiff_t stride, const S& spot,
+                              const Places& places) {
     const VI32 one = all(256), half = all(128);
     VI32 row[2];
     for (int j = 0; j < 2; ++j) {
@@ -265,8 +266,8 @@ HWY_INLINE VI32 bilinear(const uint32_t* plane, ptrdiff_t stride, const S& spot,
 }
 
 template <class S>
-HWY_INLINE VI32 catmullRom(const TaaPolicy& p, const uint32_t* plane, ptrdiff_t stride,
-                           const S& spot, const Cubic& wx, const Cubic& wy) {
+STILL_LAB_PHASE VI32 catmullRom(const TaaPolicy& p, const uint32_t* plane, ptrdiff_t stride,
+                                const S& spot, const Cubic& wx, const Cubic& wy) {
     const bool corners = p.history == HistoryFilter::catmull_rom16;
     VI32 sum = zero(), low = all(INT32_MAX), high = zero();
     for (int j = 0; j < 4; ++j) {
@@ -296,7 +297,7 @@ HWY_INLINE VI32 catmullRom(const TaaPolicy& p, const uint32_t* plane, ptrdiff_t 
 
 /// Filters that read a fixed set of taps.
 template <class Source, class S>
-HWY_INLINE Colours filtered(const ResolveJob& job, const S& spot, const Places& places) {
+STILL_LAB_PHASE Colours filtered(const ResolveJob& job, const S& spot, const Places& places) {
     const TaaPolicy& p = Source::of(job);
     Colours colour;
     const VI32 fraction = hn::Or(places.fx, places.fy);
@@ -328,8 +329,8 @@ struct TapSums {
 };
 
 template <class Source, class S>
-HWY_INLINE void addTap(const ResolveJob& job, const Guides& guides, const S& spot, VI32 column,
-                       VI32 row, int i, int j, VI32 weight, TapSums& sums) {
+STILL_LAB_PHASE void addTap(const ResolveJob& job, const Guides& guides, const S& spot, VI32 column,
+                            VI32 row, int i, int j, VI32 weight, TapSums& sums) {
     const VI32 x = hn::Add(column, all(i)), y = hn::Add(row, all(j));
     const MaskI inside = hn::And(hn::Eq(x, clamped(x, zero(), all(job.width - 1))),
                                  hn::Eq(y, clamped(y, zero(), all(job.height - 1))));
@@ -344,8 +345,8 @@ HWY_INLINE void addTap(const ResolveJob& job, const Guides& guides, const S& spo
 }
 
 template <class Source, class S>
-HWY_INLINE void addFour(const ResolveJob& job, const Guides& guides, const S& spot,
-                        const Places& places, TapSums& sums) {
+STILL_LAB_PHASE void addFour(const ResolveJob& job, const Guides& guides, const S& spot,
+                             const Places& places, TapSums& sums) {
     const VI32 one = all(256);
     for (int k = 0; k < 4; ++k) {
         const int i = k & 1, j = k >> 1;
@@ -360,7 +361,7 @@ HWY_INLINE void addFour(const ResolveJob& job, const Guides& guides, const S& sp
 
 /// HistoryFilter::validated; lanes without any tap are no longer found.
 template <class Source>
-HWY_INLINE Colours validated(const ResolveJob& job, const Guides& guides, Places& places) {
+STILL_LAB_PHASE Colours validated(const ResolveJob& job, const Guides& guides, Places& places) {
     TapSums sums{{zero(), zero(), zero()}, zero()};
     atSpot(job, places.found, places.column, places.row,
            [&](const auto& spot) HWY_ATTR { addFour<Source>(job, guides, spot, places, sums); });
@@ -389,8 +390,8 @@ struct Pasts {
 
 /// What is read at the pixel nearest to the place.
 template <class Source, class S>
-HWY_INLINE void readNearest(const ResolveJob& job, const Guides& guides, const S& spot,
-                            Pasts& past) {
+STILL_LAB_PHASE void readNearest(const ResolveJob& job, const Guides& guides, const S& spot,
+                                 Pasts& past) {
     const TaaPolicy& p = Source::of(job);
     if (p.history != HistoryFilter::validated) {
         past.failed = failedTests<Source>(job, guides, spot, 0);
@@ -413,7 +414,8 @@ HWY_INLINE void readNearest(const ResolveJob& job, const Guides& guides, const S
 }
 
 template <class Source>
-HWY_INLINE Pasts findPast(const ResolveJob& job, const Guides& guides, MaskI pixels, int x, int y) {
+STILL_LAB_PHASE Pasts findPast(const ResolveJob& job, const Guides& guides, MaskI pixels, int x,
+                               int y) {
     const TaaPolicy& p = Source::of(job);
     Pasts past{noLanes(), {{zero(), zero(), zero()}}, zero(), zero()};
     Places places = findPlaces<Source>(job, guides, x, y);

@@ -165,7 +165,7 @@ HWY_INLINE VI32 interpolated(const uint32_t* table, VI32 index) {
     return hn::Add(first, hn::ShiftRight<kBits>(part));
 }
 
-HWY_INLINE Colours toneIn(const Colours& c) {
+STILL_LAB_PHASE Colours toneIn(const Colours& c) {
     const VI32 scale = interpolated<6>(kToneIn.of, largest(c));
     Colours t;
     for (int k = 0; k < 3; ++k) {
@@ -174,7 +174,7 @@ HWY_INLINE Colours toneIn(const Colours& c) {
     return t;
 }
 
-HWY_INLINE Colours toneOut(const Colours& c) {
+STILL_LAB_PHASE Colours toneOut(const Colours& c) {
     Colours t;
     for (int k = 0; k < 3; ++k) {
         t.v[k] = hn::Min(c.v[k], all(kToneMax));

@@ -37,7 +37,7 @@ HWY_INLINE VI32 lessTrust(VI32 alpha_q15, VI32 weight_q8) {
 }
 
 template <class Source>
-HWY_INLINE Shares shareOf(const ResolveJob& job, VI32 memory, VI32 trust_q8, VI32 speed_fx8) {
+STILL_LAB_PHASE Shares shareOf(const ResolveJob& job, VI32 memory, VI32 trust_q8, VI32 speed_fx8) {
     const TaaPolicy& p = Source::of(job);
     Shares s{all(p.alpha_q15), zero(), zero(), hn::Min(trust_q8, all(255))};
     switch (p.blend) {
@@ -91,7 +91,7 @@ HWY_INLINE VI32 inverseWeight(const TaaPolicy& p, VI32 luma) {
     return hn::ShiftRight<2>(hn::Add(luma, all(linear ? 4096 : 32768)));
 }
 
-HWY_INLINE VI32 steadied(const TaaPolicy& p, VI32 alpha_q15, VI32 luma, VI32 history_luma) {
+STILL_LAB_PHASE VI32 steadied(const TaaPolicy& p, VI32 alpha_q15, VI32 luma, VI32 history_luma) {
     if (p.anti_flicker == AntiFlicker::none) {
         return alpha_q15;
     }
@@ -107,8 +107,8 @@ HWY_INLINE VI32 steadied(const TaaPolicy& p, VI32 alpha_q15, VI32 luma, VI32 his
 }
 
 template <class Source>
-HWY_INLINE Colours blend(const ResolveJob& job, const Shares& share, const Colours& history_w24,
-                         const Colours& sample_w24) {
+STILL_LAB_PHASE Colours blend(const ResolveJob& job, const Shares& share,
+                              const Colours& history_w24, const Colours& sample_w24) {
     const TaaPolicy& p = Source::of(job);
     Colours result;
     if (p.blend != Blend::mean || p.anti_flicker != AntiFlicker::none) {
@@ -128,8 +128,8 @@ HWY_INLINE Colours blend(const ResolveJob& job, const Shares& share, const Colou
 }
 
 template <class Source>
-HWY_INLINE void storeGroup(const ResolveJob& job, const Guides& guides, const Colours& colour_w24,
-                           const Shares& share, int x, int y) {
+STILL_LAB_PHASE void storeGroup(const ResolveJob& job, const Guides& guides,
+                                const Colours& colour_w24, const Shares& share, int x, int y) {
     const TaaPolicy& p = Source::of(job);
     const ptrdiff_t at = y * job.history_stride + x, shown_at = y * job.stride + x;
     const Colours working = rounded(colour_w24);
@@ -161,8 +161,8 @@ HWY_INLINE bool needsSpeed(const TaaPolicy& p) {
 }
 
 template <class Source>
-HWY_INLINE void resolveGroup(const ResolveJob& job, const TileRect& tile, const Rows& rows,
-                             const GuideStrip& strip, int x, int y) {
+STILL_LAB_PHASE void resolveGroup(const ResolveJob& job, const TileRect& tile, const Rows& rows,
+                                  const GuideStrip& strip, int x, int y) {
     const TaaPolicy& p = Source::of(job);
     const int i = kMaxLanes + x - tile.x0;
     const MaskI pixels = hn::Lt(hn::Iota(DI32(), x), all(tile.x1));
@@ -218,7 +218,7 @@ TileKernel presetKernel(const TaaPolicy& policy, std::index_sequence<kIndices...
 }
 
 TileKernel kernelHere(const TaaPolicy& policy) {
-    return presetKernel(policy, std::make_index_sequence<kRecipes.size()>());
+    return presetKernel(policy, std::make_index_sequence<kCompiledPresets>());
 }
 
 }  // namespace HWY_NAMESPACE

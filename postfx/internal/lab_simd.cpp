@@ -19,6 +19,23 @@
 #include "postfx/internal/lab_rules.h"
 #include "rasterizer/internal/dispatch.h"
 
+// Sanitizers instrument every inlined operation, and a kernel in one piece would take minutes to
+// compile. With them, its phases are functions of their own, and presets, which run the same lines,
+// are left to the generic kernel.
+#ifndef STILL_LAB_PHASE
+#if HWY_IS_ASAN || HWY_IS_TSAN
+#define STILL_LAB_PHASE HWY_NOINLINE HWY_ATTR
+namespace still::lab {
+constexpr size_t kCompiledPresets = 0;
+}
+#else
+#define STILL_LAB_PHASE HWY_INLINE
+namespace still::lab {
+constexpr size_t kCompiledPresets = kRecipes.size();
+}
+#endif
+#endif
+
 // Each rests on those before. Highway's one-lane target lacks shuffles and is never asked for: the
 // reference kernel stands in.
 #if HWY_TARGET != HWY_SCALAR

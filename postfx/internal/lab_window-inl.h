@@ -26,7 +26,8 @@ HWY_INLINE void repeatBorder(int32_t* row, bool left, bool right, int columns) {
 }
 
 template <class Source>
-HWY_INLINE void fillSpace(const ResolveJob& job, const Colours& colour, ColourStrip& strip, int i) {
+STILL_LAB_PHASE void fillSpace(const ResolveJob& job, const Colours& colour, ColourStrip& strip,
+                               int i) {
     const TaaPolicy& p = Source::of(job);
     Colours held = colour;
     if (usesStatistics(p)) {
@@ -45,8 +46,8 @@ HWY_INLINE void fillSpace(const ResolveJob& job, const Colours& colour, ColourSt
 
 /// Row y, or the picture's last one beyond its border.
 template <class Source>
-HWY_INLINE void fillColours(const ResolveJob& job, const TileRect& tile, int y,
-                            ColourStrip& strip) {
+STILL_LAB_PHASE void fillColours(const ResolveJob& job, const TileRect& tile, int y,
+                                 ColourStrip& strip) {
     const TaaPolicy& p = Source::of(job);
     const int lanes = int(hn::Lanes(D32())), columns = tile.x1 - tile.x0;
     const ptrdiff_t row = std::clamp(y, 0, job.height - 1) * job.stride + tile.x0 - kMaxLanes;
@@ -77,7 +78,7 @@ struct Rows {
 };
 
 template <class Source>
-HWY_INLINE Colours filteredSample_w24(const ResolveJob& job, const Rows& rows, int i) {
+STILL_LAB_PHASE Colours filteredSample_w24(const ResolveJob& job, const Rows& rows, int i) {
     Colours result;
     for (int c = 0; c < 3; ++c) {
         if (Source::of(job).sample == SampleFilter::box) {
@@ -129,7 +130,7 @@ struct Boxes {
 };
 
 template <class Source>
-HWY_INLINE Boxes extentBox(const ResolveJob& job, const Rows& rows, int i) {
+STILL_LAB_PHASE Boxes extentBox(const ResolveJob& job, const Rows& rows, int i) {
     const TaaPolicy& p = Source::of(job);
     const bool round_corners = p.rectification == Rectification::rounded_clip;
     Boxes box;
@@ -171,7 +172,8 @@ HWY_INLINE VI32 sumOfNine(const int32_t* top, const int32_t* middle, const int32
 }
 
 template <class Source>
-HWY_INLINE Boxes statisticsBox(const ResolveJob& job, const Rows& rows, int i, VI32 speed_fx8) {
+STILL_LAB_PHASE Boxes statisticsBox(const ResolveJob& job, const Rows& rows, int i,
+                                    VI32 speed_fx8) {
     const VI32 sigma = sigmaAt<Source>(job, speed_fx8);
     Boxes box;
     for (int c = 0; c < 3; ++c) {
@@ -203,7 +205,7 @@ HWY_INLINE MaskI clampTo(const Boxes& box, Colours& colour) {
     return changed;
 }
 
-HWY_INLINE MaskI clipTo(const Boxes& box, Colours& colour) {
+STILL_LAB_PHASE MaskI clipTo(const Boxes& box, Colours& colour) {
     VI32 half = all(1), distance = all(1);
     for (int c = 0; c < 3; ++c) {
         const VI32 away = hn::Min(hn::Abs(hn::Sub(colour.v[c], box.middle[c])), all(kWorkingMax));
@@ -226,8 +228,8 @@ HWY_INLINE MaskI clipTo(const Boxes& box, Colours& colour) {
 
 /// Rectifies in place; returns the changed lanes.
 template <class Source>
-HWY_INLINE MaskI rectify(const ResolveJob& job, const Rows& rows, int i, VI32 speed_fx8,
-                         Colours& history) {
+STILL_LAB_PHASE MaskI rectify(const ResolveJob& job, const Rows& rows, int i, VI32 speed_fx8,
+                              Colours& history) {
     const TaaPolicy& p = Source::of(job);
     if (p.rectification == Rectification::off) {
         return noLanes();

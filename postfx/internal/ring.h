@@ -58,7 +58,7 @@ struct Job {
     uint8_t* shown_count = nullptr;  ///< samples in it; gathered pixels: frames, rounded
     /// Frames since a surface's shading changed, by surface number, 255 = long ago; null when none
     /// changed within the ring.
-    const uint8_t* change_age = nullptr;
+    const uint32_t* change_age = nullptr;
     int sample_cap = 64;
     int settled = 8;  ///< min(kSettled, sample_cap)
     bool camera_moved = false;

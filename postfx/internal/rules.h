@@ -100,14 +100,14 @@ constexpr int placeOf(int e_fx8) {
 }
 
 /// floor(2^16 / i) for 256 … 511.
-constexpr std::array<uint16_t, 256> makeSmallReciprocals() {
-    std::array<uint16_t, 256> table{};
+constexpr std::array<int32_t, 256> makeSmallReciprocals() {
+    std::array<int32_t, 256> table{};
     for (int i = 0; i < 256; ++i) {
-        table[size_t(i)] = uint16_t(65536 / (256 + i));
+        table[size_t(i)] = 65536 / (256 + i);
     }
     return table;
 }
-inline constexpr std::array<uint16_t, 256> kSmallReciprocals = makeSmallReciprocals();
+alignas(64) inline constexpr std::array<int32_t, 256> kSmallReciprocals = makeSmallReciprocals();
 
 /// Samples lie unevenly around the centre; giving each the weight w · (1 − tilt · e) moves their
 /// centre of gravity onto the pixel's: the weights of a plane fitted through the samples, taken at

@@ -33,6 +33,13 @@ HWY_INLINE VI32 asSigned(V32 v) {
     return hn::BitCast(DI32(), v);
 }
 
+HWY_INLINE hn::Mask<DI32> atLeast(VI32 a, VI32 b) {
+    return hn::Not(hn::Lt(a, b));
+}
+HWY_INLINE hn::Mask<DI32> atMost(VI32 a, VI32 b) {
+    return hn::Not(hn::Gt(a, b));
+}
+
 HWY_INLINE V16 narrow16(V32 v) {
     const hn::RepartitionToNarrow<D32> d_twice;
     return hn::LowerHalf(D16(),
@@ -72,19 +79,6 @@ HWY_INLINE V32 compacted(V32 normal) {
                   hn::And(hn::ShiftRight<16>(normal), hn::Set(d, 0xFF00u)));
 }
 
-/// floor(2^32 / n) + 1: (v · table[n]) >> 32 is floor(v / n) exactly for n ≥ 2 and n · v < 2^32.
-struct Reciprocals {
-    uint32_t of[256];
-};
-constexpr Reciprocals makeReciprocals() {
-    Reciprocals table{};
-    for (uint64_t n = 2; n < 256; ++n) {
-        table.of[n] = uint32_t((uint64_t{1} << 32) / n + 1);
-    }
-    return table;
-}
-alignas(64) constexpr Reciprocals kReciprocals = makeReciprocals();
-
 /// What addSample() needs of the count: computed once for three channels.
 struct Growth {
     VI32 grown;   ///< count + 1, 2 … 255
@@ -99,8 +93,8 @@ HWY_INLINE Growth growthOf(V32 count) {
     const VI32 grown = hn::Add(asSigned(count), hn::Set(di, 1));
     const VI32 first = hn::Set(di, hn::GetLane(grown));
     const V32 reciprocal = hn::AllTrue(di, hn::Eq(grown, first))
-                               ? hn::Set(d, kReciprocals.of[hn::GetLane(grown)])
-                               : hn::GatherIndex(d, kReciprocals.of, grown);
+                               ? hn::Set(d, kReciprocals[size_t(hn::GetLane(grown))])
+                               : hn::GatherIndex(d, kReciprocals.data(), grown);
     const VI32 offset = hn::Add(hn::ShiftRight<1>(grown), hn::Mul(grown, hn::Set(di, kBias)));
     return {grown, offset, reciprocal};
 }
@@ -124,46 +118,7 @@ HWY_INLINE void addSamples(const Growth& growth, V32 sample, V32& mean, VI32& re
     rest = hn::Sub(excess, hn::Mul(step, growth.grown));
 }
 
-struct Cubic {
-    VI32 w[4];
-};
-/// cubicWeights()
-HWY_INLINE Cubic cubicOf(VI32 f) {
-    const DI32 di;
-    const VI32 f1 = hn::ShiftLeft<16>(f);
-    const VI32 ff = hn::Mul(f, f);
-    const VI32 f2 = hn::ShiftLeft<8>(ff);
-    const VI32 f3 = hn::Mul(ff, f);
-    const auto times = [&](int k, VI32 v) { return hn::Mul(hn::Set(di, k), v); };
-    const VI32 before = roundedShift<17>(times(-5, hn::Add(hn::Sub(f3, hn::Add(f2, f2)), f1)));
-    const VI32 right =
-        roundedShift<17>(hn::Add(hn::Sub(times(14, f2), times(11, f3)), times(5, f1)));
-    const VI32 after = roundedShift<17>(times(5, hn::Sub(f3, f2)));
-    const VI32 left = hn::Sub(hn::Sub(hn::Set(di, 1 << kCubicBits), before), hn::Add(right, after));
-    return {{before, left, right, after}};
-}
-
-/// resampledCount(): 16 / (blur + 1) by comparisons would need 7 of them; a table is one gather.
-struct CountTable {
-    uint32_t of[129];
-};
-constexpr CountTable makeCountTable() {
-    CountTable table{};
-    for (int blur = 0; blur <= 128; ++blur) {
-        table.of[blur] = uint32_t(resampledCount(blur));
-    }
-    return table;
-}
-alignas(64) constexpr CountTable kCountTable = makeCountTable();
-
-HWY_INLINE V32 resampledCounts(VI32 fx, VI32 fy) {
-    const DI32 di;
-    const VI32 one = hn::Set(di, 256);
-    const VI32 blur = hn::Add(hn::Mul(fx, hn::Sub(one, fx)), hn::Mul(fy, hn::Sub(one, fy)));
-    return hn::GatherIndex(D32(), kCountTable.of, hn::ShiftRight<8>(blur));
-}
-
-/// Compact normals as vectors: see similarNormals().
+/// Compact normals as vectors: decodeNormal().
 struct Normals {
     VI32 x, y, z, square;
 };
@@ -180,15 +135,62 @@ HWY_INLINE Normals decodeNormals(V32 packed) {
     const VI32 square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     return {x, y, z, square};
 }
-HWY_INLINE Mask32 differentNormals(const Normals& p, const Normals& q) {
+/// similarlyLit()
+HWY_INLINE Mask32 litAlike(const Normals& p, const Normals& q) {
     const DI32 di;
     const VI32 dot = hn::Add(hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)), hn::Mul(p.z, q.z));
     const VI32 eighth = hn::ShiftRight<3>(dot);
     const VI32 bound =
-        hn::Mul(hn::ShiftRight<6>(hn::Mul(p.square, hn::Set(di, 5))), hn::ShiftRight<3>(q.square));
-    const auto far =
-        hn::Or(hn::Not(hn::Gt(dot, hn::Zero(di))), hn::Lt(hn::Mul(eighth, eighth), bound));
-    return hn::RebindMask(D32(), far);
+        hn::Mul(hn::ShiftRight<8>(hn::Mul(p.square, hn::Set(di, 31))), hn::ShiftRight<3>(q.square));
+    return hn::RebindMask(
+        D32(), hn::And(hn::Gt(dot, hn::Zero(di)), hn::Not(hn::Lt(hn::Mul(eighth, eighth), bound))));
+}
+
+// Halves of packed words.
+HWY_INLINE V32 low(V32 v) {
+    return hn::And(v, hn::Set(D32(), 0xFFFF));
+}
+HWY_INLINE V32 high(V32 v) {
+    return hn::ShiftRight<16>(v);
+}
+HWY_INLINE VI32 lowSigned(V32 v) {
+    return hn::ShiftRight<16>(hn::ShiftLeft<16>(asSigned(v)));
+}
+HWY_INLINE VI32 highSigned(V32 v) {
+    return hn::ShiftRight<16>(asSigned(v));
+}
+HWY_INLINE V32 pack(V32 low_half, V32 high_half) {
+    return hn::Or(low_half, hn::ShiftLeft<16>(high_half));
+}
+HWY_INLINE Mask32 maskOf(hn::Mask<DI32> m) {
+    return hn::RebindMask(D32(), m);
+}
+HWY_INLINE hn::Mask<DI32> signedMask(Mask32 m) {
+    return hn::RebindMask(DI32(), m);
+}
+/// Lanes of the group that are pixels of the tile.
+HWY_INLINE Mask32 lanesBefore(int end) {
+    const DI32 di;
+    return maskOf(hn::Lt(hn::Iota(di, 0), hn::Set(di, end)));
+}
+HWY_INLINE V32 choose(Mask32 mask, V32 yes, V32 no) {
+    return hn::IfThenElse(mask, yes, no);
+}
+HWY_INLINE VI32 choose(Mask32 mask, VI32 yes, VI32 no) {
+    return hn::IfThenElse(signedMask(mask), yes, no);
+}
+HWY_INLINE VI32 larger(VI32 a, VI32 b) {
+    return hn::Max(hn::Abs(a), hn::Abs(b));
+}
+/// Both coordinates of a pixel lie in the image.
+HWY_INLINE Mask32 within(VI32 v, int size) {
+    const DI32 di;
+    return maskOf(hn::And(atLeast(v, hn::Zero(di)), hn::Lt(v, hn::Set(di, size))));
+}
+HWY_INLINE V32 loadMotion(const Motion* p) {
+    static_assert(sizeof(Motion) == sizeof(uint32_t));
+    const hn::Repartition<uint8_t, D32> bytes;
+    return hn::BitCast(D32(), hn::LoadU(bytes, reinterpret_cast<const uint8_t*>(p)));
 }
 
 }  // namespace HWY_NAMESPACE

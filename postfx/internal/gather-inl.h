@@ -1,0 +1,633 @@
+// The gather in lanes, one pixel each; gather_reference.cpp is the truth and names the steps. Two
+// passes: the first follows the surfaces back, decides which samples count, and keeps them with
+// their weights; the second weighs their colours, once the moments of their places are known.
+// Included once per target by taa_simd.cpp.
+
+HWY_BEFORE_NAMESPACE();
+namespace still::taa {
+namespace HWY_NAMESPACE {
+
+/// Words of the four samples around the pixels' places: left and right of the upper row, then of
+/// the lower one.
+struct Four {
+    V32 of[4];
+};
+
+/// Where the four samples are. Lanes whose samples lie next to each other as the pixels do form a
+/// cluster, which is loaded at once.
+struct Site {
+    VI32 ix, iy;    ///< of the upper left sample
+    V32 fx, fy;     ///< 0 … 255
+    V32 weight[4];  ///< 0 outside the picture
+    V32 wanted;     ///< sum of the weights
+    VI32 ex, ey;    ///< place of the upper left sample, 1/64 pixel
+};
+
+/// More clusters than this are gathered.
+constexpr int kMaxClusters = 5;
+
+/// Calls load(offset, lanes) for clusters of lanes: sample `index` of lane i is at offset + i. What
+/// is left goes to gather(lanes).
+template <class Load, class Gather>
+HWY_INLINE void forClusters(VI32 index, Mask32 lanes, Load&& load, Gather&& gather) {
+    const D32 d;
+    const DI32 di;
+    const VI32 offset = hn::Sub(index, hn::Iota(di, 0));
+    const int32_t first = hn::GetLane(offset);
+    if (hn::AllTrue(di, hn::Eq(offset, hn::Set(di, first)))) {
+        load(first, lanes);
+        return;
+    }
+    alignas(64) int32_t offsets[kMaxLanes];
+    hn::StoreU(offset, di, offsets);
+    Mask32 left = lanes;
+    for (int cluster = 0; cluster < kMaxClusters; ++cluster) {
+        const intptr_t lane = hn::FindFirstTrue(d, left);
+        if (lane < 0) {
+            return;
+        }
+        const Mask32 same = hn::And(left, maskOf(hn::Eq(offset, hn::Set(di, offsets[lane]))));
+        load(offsets[lane], same);
+        left = hn::AndNot(same, left);
+    }
+    if (!hn::AllFalse(d, left)) {
+        gather(left);
+    }
+}
+
+/// Rows above and below the picture are not memory, so the samples of a site are addressed by rows
+/// inside; those outside weigh nothing.
+struct Address {
+    VI32 upper, lower;  ///< index of the left sample
+    Mask32 lanes;       ///< lanes with any weight
+};
+
+HWY_INLINE Address addressOf(const Job& job, const Site& site) {
+    const DI32 di;
+    const VI32 zero = hn::Zero(di);
+    const VI32 last = hn::Set(di, job.height - 1);
+    const VI32 stride = hn::Set(di, int32_t(job.stride));
+    const VI32 y0 = hn::Min(hn::Max(site.iy, zero), last);
+    const VI32 y1 = hn::Min(hn::Max(hn::Add(site.iy, hn::Set(di, 1)), zero), last);
+    const Mask32 lanes = hn::Ne(site.wanted, hn::Zero(D32()));
+    // Lanes without weight follow the first one of the row, whatever they would have read.
+    const VI32 x = hn::Min(hn::Max(site.ix, hn::Set(di, -1)), hn::Set(di, job.width - 1));
+    return {hn::Add(hn::Mul(y0, stride), x), hn::Add(hn::Mul(y1, stride), x), lanes};
+}
+
+HWY_INLINE void fetchRow(const uint32_t* plane, VI32 index, Mask32 lanes, V32& left, V32& right) {
+    const D32 d;
+    forClusters(
+        index, lanes,
+        [&](int32_t offset, Mask32 same) {
+            left = hn::IfThenElse(same, hn::LoadU(d, plane + offset), left);
+            right = hn::IfThenElse(same, hn::LoadU(d, plane + offset + 1), right);
+        },
+        [&](Mask32 rest) {
+            left = hn::IfThenElse(rest, hn::GatherIndex(d, plane, index), left);
+            right = hn::IfThenElse(rest, hn::GatherIndex(d, plane + 1, index), right);
+        });
+}
+
+/// Three planes at once: the clusters are the same.
+struct Samples {
+    Four red_green, blue_surface, depths;
+};
+HWY_INLINE void fetchRow(const SlotIn& slot, VI32 index, Mask32 lanes, int row, Samples& s) {
+    const D32 d;
+    V32* rg = s.red_green.of + 2 * row;
+    V32* bs = s.blue_surface.of + 2 * row;
+    V32* dd = s.depths.of + 2 * row;
+    forClusters(
+        index, lanes,
+        [&](int32_t offset, Mask32 same) {
+            for (int i = 0; i < 2; ++i) {
+                rg[i] = choose(same, hn::LoadU(d, slot.red_green + offset + i), rg[i]);
+                bs[i] = choose(same, hn::LoadU(d, slot.blue_surface + offset + i), bs[i]);
+                dd[i] = choose(same, hn::LoadU(d, slot.depths + offset + i), dd[i]);
+            }
+        },
+        [&](Mask32 rest) {
+            for (int i = 0; i < 2; ++i) {
+                rg[i] = choose(rest, hn::GatherIndex(d, slot.red_green + i, index), rg[i]);
+                bs[i] = choose(rest, hn::GatherIndex(d, slot.blue_surface + i, index), bs[i]);
+                dd[i] = choose(rest, hn::GatherIndex(d, slot.depths + i, index), dd[i]);
+            }
+        });
+}
+
+HWY_INLINE Samples fetchSamples(const SlotIn& slot, const Address& address) {
+    const V32 zero = hn::Zero(D32());
+    Samples s;
+    for (int i = 0; i < 4; ++i) {
+        s.red_green.of[i] = s.blue_surface.of[i] = s.depths.of[i] = zero;
+    }
+    fetchRow(slot, address.upper, address.lanes, 0, s);
+    fetchRow(slot, address.lower, address.lanes, 1, s);
+    return s;
+}
+
+HWY_INLINE Four fetchFour(const uint32_t* plane, const Address& address) {
+    const V32 zero = hn::Zero(D32());
+    Four four{{zero, zero, zero, zero}};
+    fetchRow(plane, address.upper, address.lanes, four.of[0], four.of[1]);
+    fetchRow(plane, address.lower, address.lanes, four.of[2], four.of[3]);
+    return four;
+}
+
+/// A surface on its way back through the frames.
+struct LayerLanes {
+    V32 surface, motion;
+    VI32 depth, step, tolerance;
+};
+struct Expected {
+    VI32 depth, tolerance;
+};
+HWY_INLINE Expected expectedAt(const LayerLanes& layer, int k) {
+    const DI32 di;
+    const VI32 frames = hn::Set(di, k);
+    const VI32 drift = hn::Mul(hn::Abs(layer.step), frames);
+    return {hn::Add(layer.depth, hn::Mul(layer.step, frames)),
+            hn::Add(layer.tolerance, hn::ShiftRight<kStepShift>(drift))};
+}
+
+struct WindowLanes {
+    LayerLanes owner, far;
+    V32 normal;
+    VI32 slide;
+    Mask32 moved, layered, apart;
+};
+
+/// The accepted samples of the group's pixels.
+struct Kept {
+    struct Frame {
+        V32 weight[4], red_green[4], blue[4];  ///< high half of blue: shows what is behind
+        VI32 ex, ey;
+    };
+    Frame frame[kMaxRing];
+    int frames = 0;
+    VI32 w, x, y, xx, xy, yy;
+    VI32 old_weight;
+
+    HWY_INLINE void clear() {
+        frames = 0;
+        w = x = y = xx = xy = yy = old_weight = hn::Zero(DI32());
+    }
+};
+
+HWY_INLINE Site siteOf(const Job& job, VI32 px, VI32 py, const SlotIn& slot, Mask32 alive) {
+    const DI32 di;
+    const D32 d;
+    const VI32 sx = hn::Sub(px, hn::Set(di, slot.jitter_x_fx8));
+    const VI32 sy = hn::Sub(py, hn::Set(di, slot.jitter_y_fx8));
+    Site site;
+    site.ix = hn::ShiftRight<8>(sx);
+    site.iy = hn::ShiftRight<8>(sy);
+    site.fx = hn::And(asUnsigned(sx), hn::Set(d, 255));
+    site.fy = hn::And(asUnsigned(sy), hn::Set(d, 255));
+    const auto axis = [&](V32 f) {
+        const VI32 scaled = hn::Add(hn::Mul(hn::Sub(asSigned(f), hn::Set(di, 51)), hn::Set(di, 53)),
+                                    hn::Set(di, 256));
+        return asUnsigned(
+            hn::Min(hn::Max(hn::ShiftRight<9>(scaled), hn::Zero(di)), hn::Set(di, kAxisWeight)));
+    };
+    const V32 full = hn::Set(d, kAxisWeight);
+    const VI32 one = hn::Set(di, 1);
+    const auto inside = [&](VI32 v, int size, V32 w) {
+        return hn::IfThenElseZero(hn::And(within(v, size), alive), w);
+    };
+    const V32 right = axis(site.fx), lower = axis(site.fy);
+    const V32 wx[2] = {inside(site.ix, job.width, hn::Sub(full, right)),
+                       inside(hn::Add(site.ix, one), job.width, right)};
+    const V32 wy[2] = {inside(site.iy, job.height, hn::Sub(full, lower)),
+                       inside(hn::Add(site.iy, one), job.height, lower)};
+    site.wanted = hn::Zero(d);
+    for (int tap = 0; tap < 4; ++tap) {
+        site.weight[tap] = hn::Mul(wx[tap & 1], wy[tap >> 1]);
+        site.wanted = hn::Add(site.wanted, site.weight[tap]);
+    }
+    site.ex = hn::ShiftRight<2>(hn::Neg(asSigned(site.fx)));
+    site.ey = hn::ShiftRight<2>(hn::Neg(asSigned(site.fy)));
+    return site;
+}
+
+HWY_INLINE VI32 slideOf(V32 a, V32 b) {
+    return hn::Max(hn::Abs(hn::Sub(lowSigned(a), lowSigned(b))),
+                   hn::Abs(hn::Sub(highSigned(a), highSigned(b))));
+}
+
+/// Lanes of a tap that show shading which is no more: staleShading().
+HWY_INLINE Mask32 staleLanes(const Job& job, int k, V32 surface) {
+    const D32 d;
+    const DI32 di;
+    const V32 age = hn::GatherIndex(d, job.change_age, asSigned(surface));
+    return maskOf(hn::Lt(asSigned(age), hn::Set(di, k)));
+}
+
+/// Where a sample lies in depth relative to a layer: placeOf().
+struct PlaceLanes {
+    Mask32 same, farther;
+    VI32 difference;
+};
+HWY_INLINE PlaceLanes placeOf(const LayerLanes& layer, const Expected& expected, V32 surface,
+                              V32 depth) {
+    const VI32 difference = hn::Sub(asSigned(depth), expected.depth);
+    const Mask32 close = maskOf(atMost(hn::Abs(difference), expected.tolerance));
+    const Mask32 same = hn::And(close, hn::Eq(surface, layer.surface));
+    const Mask32 not_nearer = maskOf(atMost(difference, expected.tolerance));
+    return {same, hn::AndNot(same, not_nearer), difference};
+}
+
+/// Samples along the owner's way: collectOwn().
+struct OwnRule {
+    const Job& job;
+    const WindowLanes& window;
+    Normals normal;
+    bool any_moved;
+
+    HWY_INLINE void operator()(int k, const SlotIn& slot, const Address& address, V32 way,
+                               const Samples& samples, V32 weight[4], V32 behind[4]) const {
+        const D32 d;
+        const DI32 di;
+        const Expected own = expectedAt(window.owner, k);
+        const Expected far = expectedAt(window.far, k);
+        const VI32 lag = hn::Mul(window.slide, hn::Set(di, k));
+        const Mask32 lags = maskOf(hn::Gt(lag, hn::Set(di, kMaxLag)));
+        const VI32 height = hn::Sub(own.depth, far.depth);
+        Mask32 hard[4], same[4];
+        Mask32 any_hard = hn::MaskFromVec(hn::Zero(d));
+        for (int t = 0; t < 4; ++t) {
+            const V32 surface = high(samples.blue_surface.of[t]);
+            const V32 depth = low(samples.depths.of[t]);
+            const PlaceLanes place = placeOf(window.owner, own, surface, depth);
+            const Mask32 weighs = hn::Ne(weight[t], hn::Zero(d));
+            const Mask32 easy = hn::Or(place.same, hn::And(place.farther, window.layered));
+            same[t] = place.same;
+            hard[t] = hn::AndNot(easy, weighs);
+            any_hard = hn::Or(any_hard, hard[t]);
+            const VI32 above = hn::ShiftLeft<2>(hn::Sub(asSigned(depth), far.depth));
+            const Mask32 left =
+                hn::And(hn::And(place.farther, lags), maskOf(hn::Lt(above, height)));
+            behind[t] = hn::IfThenElseZero(left, hn::Set(d, 0x10000));
+        }
+        if (k == 0) {
+            return;
+        }
+        if (!hn::AllFalse(d, any_hard)) {
+            const Four motion = fetchFour(slot.motion, address);
+            for (int t = 0; t < 4; ++t) {
+                const VI32 slid = hn::Mul(slideOf(motion.of[t], way), hn::Set(di, k));
+                const Mask32 none =
+                    maskOf(hn::Eq(lowSigned(motion.of[t]), hn::Set(di, kNoHistory)));
+                const Mask32 far_off = hn::Or(none, maskOf(hn::Gt(slid, hn::Set(di, kMaxSlide))));
+                weight[t] = hn::IfThenZeroElse(hn::And(hard[t], far_off), weight[t]);
+            }
+        }
+        if (any_moved) {
+            const Four owner = fetchFour(slot.owner, address);
+            for (int t = 0; t < 4; ++t) {
+                const Mask32 unlike = hn::Not(litAlike(decodeNormals(high(owner.of[t])), normal));
+                const Mask32 tested =
+                    hn::And(hn::And(same[t], window.moved), hn::Ne(window.normal, hn::Zero(d)));
+                weight[t] = hn::IfThenZeroElse(hn::And(tested, unlike), weight[t]);
+            }
+        }
+    }
+};
+
+/// Samples of the farther layer: collectFar().
+struct FarRule {
+    const Job& job;
+    const WindowLanes& window;
+
+    HWY_INLINE void operator()(int k, const SlotIn&, const Address&, V32, const Samples& samples,
+                               V32 weight[4], V32 behind[4]) const {
+        const Expected own = expectedAt(window.owner, k);
+        const Expected far = expectedAt(window.far, k);
+        for (int t = 0; t < 4; ++t) {
+            const V32 surface = high(samples.blue_surface.of[t]);
+            const V32 depth = low(samples.depths.of[t]);
+            const PlaceLanes place = placeOf(window.owner, own, surface, depth);
+            const VI32 over_far = hn::Sub(asSigned(depth), far.depth);
+            const Mask32 there = maskOf(atMost(over_far, far.tolerance));
+            weight[t] = hn::IfThenElseZero(hn::And(place.farther, there), weight[t]);
+            behind[t] = hn::Zero(D32());
+        }
+    }
+};
+
+/// Keeps a frame's samples and adds the moments of their places.
+HWY_INLINE void keep(const Site& site, const Samples& samples, const V32 weight[4],
+                     const V32 behind[4], bool old, Kept& kept) {
+    const DI32 di;
+    Kept::Frame& frame = kept.frame[kept.frames++];
+    VI32 w[4];
+    for (int t = 0; t < 4; ++t) {
+        w[t] = asSigned(weight[t]);
+        frame.weight[t] = weight[t];
+        frame.red_green[t] = samples.red_green.of[t];
+        frame.blue[t] = hn::Or(low(samples.blue_surface.of[t]), behind[t]);
+    }
+    frame.ex = site.ex;
+    frame.ey = site.ey;
+    const VI32 step = hn::Set(di, 64);
+    const VI32 x0 = site.ex, x1 = hn::Add(x0, step), y0 = site.ey, y1 = hn::Add(y0, step);
+    const VI32 left = hn::Add(w[0], w[2]), right = hn::Add(w[1], w[3]);
+    const VI32 upper = hn::Add(w[0], w[1]), lower = hn::Add(w[2], w[3]);
+    const VI32 all = hn::Add(left, right);
+    const VI32 lx = hn::Mul(left, x0), rx = hn::Mul(right, x1);
+    const VI32 uy = hn::Mul(upper, y0), by = hn::Mul(lower, y1);
+    kept.w = hn::Add(kept.w, all);
+    kept.old_weight = old ? hn::Add(kept.old_weight, all) : kept.old_weight;
+    kept.x = hn::Add(kept.x, hn::Add(lx, rx));
+    kept.y = hn::Add(kept.y, hn::Add(uy, by));
+    kept.xx = hn::Add(kept.xx, hn::Add(hn::Mul(lx, x0), hn::Mul(rx, x1)));
+    kept.yy = hn::Add(kept.yy, hn::Add(hn::Mul(uy, y0), hn::Mul(by, y1)));
+    const VI32 ly = hn::Add(hn::Mul(w[0], y0), hn::Mul(w[2], y1));
+    const VI32 ry = hn::Add(hn::Mul(w[1], y0), hn::Mul(w[3], y1));
+    kept.xy = hn::Add(kept.xy, hn::Add(hn::Mul(ly, x0), hn::Mul(ry, x1)));
+}
+
+/// follow(): the group's pixels x … along `layer`, where `active`.
+template <class Rule>
+HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, Mask32 active,
+                        const Rule& rule, Kept& kept) {
+    const D32 d;
+    const DI32 di;
+    kept.clear();
+    V32 motion = layer.motion;
+    VI32 px = hn::ShiftLeft<8>(hn::Iota(di, x));
+    VI32 py = hn::Set(di, y * 256);
+    Mask32 alive = active;
+    for (int k = 0; k < job.frames; ++k) {
+        const SlotIn& slot = job.slot[k];
+        if (k > 0) {
+            const Mask32 ends = maskOf(hn::Eq(lowSigned(motion), hn::Set(di, kNoHistory)));
+            alive = hn::AndNot(ends, alive);
+            px = hn::Add(px, lowSigned(motion));
+            py = hn::Add(py, highSigned(motion));
+        }
+        if (hn::AllFalse(d, alive)) {
+            return;
+        }
+        const Site site = siteOf(job, px, py, slot, alive);
+        const Address address = addressOf(job, site);
+        const Samples samples = fetchSamples(slot, address);
+        V32 weight[4] = {site.weight[0], site.weight[1], site.weight[2], site.weight[3]};
+        V32 behind[4];
+        rule(k, slot, address, motion, samples, weight, behind);
+        if (k > 0 && job.change_age != nullptr) {
+            for (int t = 0; t < 4; ++t) {
+                weight[t] = hn::IfThenZeroElse(staleLanes(job, k, high(samples.blue_surface.of[t])),
+                                               weight[t]);
+            }
+        }
+        keep(site, samples, weight, behind, k > 0, kept);
+        if (k + 1 == job.frames) {
+            return;
+        }
+        const Mask32 right = maskOf(atLeast(asSigned(site.fx), hn::Set(di, 128)));
+        const Mask32 lower = maskOf(atLeast(asSigned(site.fy), hn::Set(di, 128)));
+        const VI32 nx = hn::Add(site.ix, hn::IfThenElseZero(signedMask(right), hn::Set(di, 1)));
+        const VI32 ny = hn::Add(site.iy, hn::IfThenElseZero(signedMask(lower), hn::Set(di, 1)));
+        alive = hn::And(alive, hn::And(within(nx, job.width), within(ny, job.height)));
+        if (k == 0) {
+            continue;
+        }
+        const VI32 nearest =
+            choose(alive, hn::Add(hn::Mul(ny, hn::Set(di, int32_t(job.stride))), nx), hn::Zero(di));
+        V32 next_motion = motion, owner = hn::Zero(d);
+        forClusters(
+            nearest, alive,
+            [&](int32_t offset, Mask32 same) {
+                owner = choose(same, hn::LoadU(d, slot.owner + offset), owner);
+                next_motion = choose(same, hn::LoadU(d, slot.motion + offset), next_motion);
+            },
+            [&](Mask32 rest) {
+                owner = choose(rest, hn::GatherIndex(d, slot.owner, nearest), owner);
+                next_motion = choose(rest, hn::GatherIndex(d, slot.motion, nearest), next_motion);
+            });
+        const V32 top = choose(right, samples.depths.of[1], samples.depths.of[0]);
+        const V32 bottom = choose(right, samples.depths.of[3], samples.depths.of[2]);
+        const V32 depth = high(choose(lower, bottom, top));
+        const Expected expected = expectedAt(layer, k);
+        const VI32 difference = hn::Abs(hn::Sub(asSigned(depth), expected.depth));
+        const Mask32 follows =
+            hn::And(hn::Eq(hn::And(owner, hn::Set(d, kSurfaceMask)), layer.surface),
+                    maskOf(atMost(difference, hn::Add(expected.tolerance, expected.tolerance))));
+        motion = choose(follows, next_motion, motion);
+    }
+}
+
+/// tiltOf()
+HWY_INLINE void tiltLanes(const Kept& m, VI32& tilt_x, VI32& tilt_y) {
+    const DI32 di;
+    const VI32 ridge =
+        hn::Add(hn::ShiftRight<8>(hn::Mul(m.w, hn::Set(di, kRidge))), hn::Set(di, 16));
+    const VI32 a = hn::Add(hn::ShiftRight<8>(m.xx), ridge);
+    const VI32 b = hn::ShiftRight<8>(m.xy);
+    const VI32 c = hn::Add(hn::ShiftRight<8>(m.yy), ridge);
+    const VI32 x = hn::ShiftRight<4>(m.x), y = hn::ShiftRight<4>(m.y);
+    VI32 det = hn::Sub(hn::Mul(a, c), hn::Mul(b, b));
+    VI32 nx = hn::Sub(hn::Mul(c, x), hn::Mul(b, y));
+    VI32 ny = hn::Sub(hn::Mul(a, y), hn::Mul(b, x));
+    const auto normalise = [&](auto shift_tag) {
+        constexpr int kShift = decltype(shift_tag)::value;
+        const auto large = atLeast(det, hn::Set(di, 256 << kShift));
+        det = hn::IfThenElse(large, hn::ShiftRight<kShift>(det), det);
+        nx = hn::IfThenElse(large, hn::ShiftRight<kShift>(nx), nx);
+        ny = hn::IfThenElse(large, hn::ShiftRight<kShift>(ny), ny);
+    };
+    normalise(std::integral_constant<int, 16>());
+    normalise(std::integral_constant<int, 8>());
+    normalise(std::integral_constant<int, 4>());
+    normalise(std::integral_constant<int, 2>());
+    normalise(std::integral_constant<int, 1>());
+    const VI32 reciprocal =
+        hn::GatherIndex(di, kSmallReciprocals.data(), hn::Sub(det, hn::Set(di, 256)));
+    const auto quotient = [&](VI32 n) {
+        const VI32 small = hn::Min(hn::Max(n, hn::Set(di, -16384)), hn::Set(di, 16383));
+        return hn::ShiftRight<6>(hn::Mul(small, reciprocal));
+    };
+    tilt_x = quotient(nx);
+    tilt_y = quotient(ny);
+    for (int i = 0; i < 6; ++i) {
+        const auto steep = hn::Gt(hn::Add(hn::Abs(tilt_x), hn::Abs(tilt_y)), hn::Set(di, kMaxTilt));
+        if (hn::AllFalse(di, steep)) {
+            return;
+        }
+        tilt_x = hn::IfThenElse(steep, hn::ShiftRight<1>(tilt_x), tilt_x);
+        tilt_y = hn::IfThenElse(steep, hn::ShiftRight<1>(tilt_y), tilt_y);
+    }
+}
+
+struct Colour {
+    V32 of[3];
+};
+
+/// fit(): where it returns false, `colour` stays. `behind` replaces what shows the layer behind.
+HWY_INLINE Mask32 fitLanes(const Kept& kept, const Colour* behind, Mask32 separate,
+                           Colour& colour) {
+    const D32 d;
+    const DI32 di;
+    VI32 tilt_x, tilt_y;
+    tiltLanes(kept, tilt_x, tilt_y);
+    V32 total = hn::Zero(d), sum[3] = {total, total, total};
+    const VI32 x_step = hn::ShiftLeft<6>(tilt_x), y_step = hn::ShiftLeft<6>(tilt_y);
+    const VI32 one = hn::Set(di, 1 << kTiltBits);
+    for (int f = 0; f < kept.frames; ++f) {
+        const Kept::Frame& frame = kept.frame[f];
+        const VI32 corner =
+            hn::Sub(one, hn::Add(hn::Mul(tilt_x, frame.ex), hn::Mul(tilt_y, frame.ey)));
+        for (int t = 0; t < 4; ++t) {
+            VI32 factor = (t & 1) != 0 ? hn::Sub(corner, x_step) : corner;
+            factor = (t & 2) != 0 ? hn::Sub(factor, y_step) : factor;
+            const V32 weight =
+                asUnsigned(roundedShift<kTiltBits>(hn::Mul(asSigned(frame.weight[t]), factor)));
+            V32 rgb[3] = {low(frame.red_green[t]), high(frame.red_green[t]), low(frame.blue[t])};
+            if (behind != nullptr) {
+                const Mask32 back = hn::And(separate, hn::Ne(high(frame.blue[t]), hn::Zero(d)));
+                for (int c = 0; c < 3; ++c) {
+                    rgb[c] = choose(back, behind->of[c], rgb[c]);
+                }
+            }
+            total = hn::Add(total, weight);
+            for (int c = 0; c < 3; ++c) {
+                sum[c] = hn::Add(sum[c], hn::Mul(weight, rgb[c]));
+            }
+        }
+    }
+    const Mask32 fits = hn::And(maskOf(hn::Gt(kept.w, hn::Set(di, 1))),
+                                maskOf(hn::Gt(asSigned(total), hn::Set(di, 1))));
+    const V32 reciprocal = hn::GatherIndex(d, kReciprocals.data(), asSigned(total));
+    const V32 half = hn::ShiftRight<1>(total);
+    for (int c = 0; c < 3; ++c) {
+        colour.of[c] = choose(fits, highProduct(hn::Add(sum[c], half), reciprocal), colour.of[c]);
+    }
+    return fits;
+}
+
+/// lookAround() for the pixels at `at`, whose owners stand in this frame's record.
+HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen, const Owners& far,
+                                Mask32 pixels) {
+    const D32 d;
+    const DI32 di;
+    const V32 surface_mask = hn::Set(d, kSurfaceMask);
+    const SlotIn& now = job.slot[0];
+    const V32 owner = hn::LoadU(d, now.owner + at);
+    const Mask32 inferred = hn::Ne(hn::And(owner, hn::Set(d, kInferredBit)), hn::Zero(d));
+    WindowLanes w;
+    w.owner.surface = hn::And(owner, surface_mask);
+    w.owner.depth = asSigned(high(hn::LoadU(d, now.depths + at)));
+    w.owner.motion = hn::LoadU(d, now.motion + at);
+    w.normal = high(owner);
+    const VI32 slope = hn::IfThenZeroElse(
+        signedMask(inferred), slopesOf(job, at, w.owner.surface, asUnsigned(w.owner.depth)));
+    const VI32 step = hn::Sub(asSigned(seen.expected), w.owner.depth);
+    w.owner.step = hn::IfThenZeroElse(signedMask(inferred), step);
+    const VI32 tolerance = hn::Set(di, kDepthTolerance);
+    const VI32 sloped = hn::Mul(slope, hn::Set(di, kSlopeFactor));
+    w.owner.tolerance = hn::Add(tolerance, sloped);
+    const Mask32 moved = hn::Ne(hn::And(seen.id, hn::Set(d, kMovedBit)), hn::Zero(d));
+    w.moved = hn::And(hn::AndNot(inferred, moved), pixels);
+    w.far.surface = hn::And(far.id, surface_mask);
+    w.far.depth = asSigned(clampedLogDepth(far.depth));
+    w.far.step = hn::Sub(asSigned(far.expected), w.far.depth);
+    w.far.tolerance = tolerance;
+    w.far.motion = far.motion;
+    const VI32 height = hn::Sub(w.owner.depth, w.far.depth);
+    w.layered = maskOf(hn::Gt(height, hn::Add(tolerance, hn::Add(sloped, sloped))));
+    w.slide = slideOf(w.owner.motion, w.far.motion);
+    const VI32 none = hn::Set(di, kNoHistory);
+    const Mask32 known = hn::Not(maskOf(
+        hn::Or(hn::Eq(lowSigned(w.owner.motion), none), hn::Eq(lowSigned(w.far.motion), none))));
+    w.apart = hn::And(hn::And(hn::And(w.layered, known), pixels),
+                      maskOf(hn::Gt(w.slide, hn::Set(di, kApart))));
+    return w;
+}
+
+/// mixSpatial() for the few lanes that need it.
+HWY_INLINE void mixSpatialLanes(const Job& job, int x, int y, VI32 old_weight, Mask32 lanes,
+                                Colour& colour) {
+    const D32 d;
+    const DI32 di;
+    alignas(64) uint32_t rgb[3][kMaxLanes], wanted[kMaxLanes];
+    alignas(64) int32_t weight[kMaxLanes];
+    for (int c = 0; c < 3; ++c) {
+        hn::StoreU(colour.of[c], d, rgb[c]);
+    }
+    hn::StoreU(old_weight, di, weight);
+    hn::StoreU(hn::IfThenElseZero(lanes, hn::Set(d, 1)), d, wanted);
+    for (int i = 0; i < int(hn::Lanes(d)); ++i) {
+        if (wanted[i] != 0) {
+            int pixel[3] = {int(rgb[0][i]), int(rgb[1][i]), int(rgb[2][i])};
+            mixSpatial(job, x + i, y, weight[i], pixel);
+            for (int c = 0; c < 3; ++c) {
+                rgb[c][i] = uint32_t(pixel[c]);
+            }
+        }
+    }
+    for (int c = 0; c < 3; ++c) {
+        colour.of[c] = hn::LoadU(d, rgb[c]);
+    }
+}
+
+HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Owners& seen, const Owners& far,
+                            Mask32 pixels) {
+    const D32 d;
+    const DI32 di;
+    const ptrdiff_t at = y * job.stride + x;
+    const WindowLanes window = windowOf(job, at, seen, far, pixels);
+    Colour colour;
+    for (int c = 0; c < 3; ++c) {
+        colour.of[c] = load16(job.now.colour[c] + at);
+    }
+    Kept kept;
+    Colour behind = colour;
+    Mask32 separate = hn::MaskFromVec(hn::Zero(d));
+    const bool any_apart = !hn::AllFalse(d, window.apart);
+    if (any_apart) {
+        collect(job, x, y, window.far, window.apart, FarRule{job, window}, kept);
+        separate = hn::And(fitLanes(kept, nullptr, separate, behind), window.apart);
+    }
+    const bool any_moved = !hn::AllFalse(d, window.moved);
+    const OwnRule rule{job, window, decodeNormals(window.normal), any_moved};
+    collect(job, x, y, window.owner, pixels, rule, kept);
+    fitLanes(kept, any_apart ? &behind : nullptr, separate, colour);
+    const Mask32 lone = hn::And(pixels, maskOf(hn::Lt(kept.old_weight, hn::Set(di, kFrameWeight))));
+    if (!hn::AllFalse(d, lone)) {
+        mixSpatialLanes(job, x, y, kept.old_weight, lone, colour);
+    }
+    for (int c = 0; c < 3; ++c) {
+        const V32 shown = load16(job.shown[c] + at);
+        store16(choose(pixels, colour.of[c], shown), job.shown[c] + at);
+    }
+    const V32 count = asUnsigned(roundedShift<8>(kept.w));
+    store8(choose(pixels, count, load8(job.shown_count + at)), job.shown_count + at);
+}
+
+HWY_ATTR void gatherTile(const Job& job, const TileRect& tile, bool sums_valid) noexcept {
+    const D32 d;
+    const DI32 di;
+    const int lanes = int(hn::Lanes(d));
+    OwnerStrip near_strip, far_strip;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        fillStrip<Nearest>(job, tile, y, near_strip);
+        fillStrip<Farthest>(job, tile, y, far_strip);
+        for (int x = tile.x0; x < tile.x1; x += lanes) {
+            Mask32 pixels = lanesBefore(tile.x1 - x);
+            if (sums_valid) {
+                const V32 count = load8(job.sums.count + y * job.stride + x);
+                pixels = hn::And(pixels, maskOf(hn::Lt(asSigned(count), hn::Set(di, job.settled))));
+            }
+            if (!hn::AllFalse(d, pixels)) {
+                gatherGroup(job, x, y, ownersOf<Nearest>(near_strip, x - tile.x0),
+                            ownersOf<Farthest>(far_strip, x - tile.x0), pixels);
+            }
+        }
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace still::taa
+HWY_AFTER_NAMESPACE();
