@@ -50,6 +50,12 @@ struct TileMemory {
     bool changed = true;    ///< the last frame changed the picture
 };
 
+bool changesShading(const TaaFrame& frame) {
+    return frame.shading_changed ||
+           std::any_of(frame.changed_surfaces.begin(), frame.changed_surfaces.end(),
+                       [](uint64_t word) { return word != 0; });
+}
+
 constexpr size_t kSurfaces = size_t(kSurfaceMask) + 1;
 constexpr uint32_t kLongAgo = 255;
 
@@ -76,7 +82,7 @@ struct Taa::State {
     }
 
     void begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings);
-    bool noteChanges(const TaaFrame& frame);
+    void noteChanges(const TaaFrame& frame, bool now);
     bool disturbed(const GBuffer& gbuffer, int tile) const;
     bool nothingToDo(const GBuffer& gbuffer, bool shading_changed, int cap) const;
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
@@ -110,18 +116,15 @@ void Taa::State::begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaS
         count.resize(width, height);
         shown_count.resize(width, height);
     }
-    if (frames == 0) {
+    if (frames == 0 || settings.sample_cap < sample_cap) {  // complete sums may have too much
         tiles.assign(gbuffer.tiles.size(), TileMemory{});
     }
 }
 
-/// Keeps for each surface how long ago its shading changed. Returns whether any changed now.
-bool Taa::State::noteChanges(const TaaFrame& frame) {
-    const bool now = frame.shading_changed ||
-                     std::any_of(frame.changed_surfaces.begin(), frame.changed_surfaces.end(),
-                                 [](uint64_t word) { return word != 0; });
+/// Keeps for each surface how many kept frames ago its shading changed; `now`: some did.
+void Taa::State::noteChanges(const TaaFrame& frame, bool now) {
     if (!now && since_change >= int(ring.size())) {
-        return false;
+        return;
     }
     if (change_age.empty() || since_change >= int(ring.size())) {
         change_age.assign(kSurfaces, kLongAgo);
@@ -140,7 +143,6 @@ bool Taa::State::noteChanges(const TaaFrame& frame) {
         }
     }
     since_change = now ? 0 : since_change + 1;
-    return now;
 }
 
 /// Something moved in the tile or in one of its neighbours, whose pixels reach into its windows.
@@ -237,13 +239,14 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     assert(settings.ring >= 1 && settings.ring <= kMaxRing);
     State& s = *state_;
     s.begin(gbuffer, frame, settings);
-    const bool shading_changed = s.noteChanges(frame);
+    const bool shading_changed = changesShading(frame);
     if (s.nothingToDo(gbuffer, shading_changed, settings.sample_cap)) {
         for (TileMemory& tile : s.tiles) {
             tile.changed = false;
         }
         return;
     }
+    s.noteChanges(frame, shading_changed);
     s.cursor = (s.cursor + 1) % settings.ring;
     s.frames = std::min(s.frames + 1, settings.ring);
     s.ring[size_t(s.cursor)].jitter_x_fx8 = frame.jitter_x_fx8;
