@@ -98,6 +98,7 @@ struct FrameLoop::State {
     int sampleCap() const { return int(jitterPeriod(settings.policy.jitter)); }
     int ssaaSamples() const;
     int historyStart(int frame) const;
+    uint32_t sampleOf(int frame, uint32_t subframe) const;
     RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
@@ -119,6 +120,11 @@ struct FrameLoop::State {
 int FrameLoop::State::historyStart(int frame) const {
     const int cut = lastCut(scene, frame);
     return resize_frame <= frame ? std::max(cut, resize_frame) : cut;
+}
+
+uint32_t FrameLoop::State::sampleOf(int frame, uint32_t subframe) const {
+    const uint32_t since_start = uint32_t(frame - historyStart(frame));
+    return uint32_t(settings.first_sample) + since_start * uint32_t(settings.subframes) + subframe;
 }
 
 /// Nothing is computed that the policy does not use.
@@ -200,11 +206,9 @@ void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
 /// historyStart).
 void FrameLoop::State::resolveFrame(int frame) {
     FrameState state = frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
-    const int start = historyStart(frame);
-    state.cut |= frame == start;
-    const uint32_t subframes = uint32_t(settings.subframes);
-    for (uint32_t i = 0; i < subframes; ++i) {
-        const uint32_t sample = uint32_t(frame - start) * subframes + i;
+    state.cut |= frame == historyStart(frame);
+    for (uint32_t i = 0; i < uint32_t(settings.subframes); ++i) {
+        const uint32_t sample = sampleOf(frame, i);
         const SampleOffset offset = offsetOf(state, sample);
         rasterizeSample(state, offset, sample);
         timed(times.taa_ms, [&] { resolve(state, offset); });
@@ -275,7 +279,7 @@ void FrameLoop::State::renderAlone(int frame) {
         return;
     }
     const bool reference = settings.anti_aliasing == AntiAliasing::ssaa;
-    rasterizeSample(state, {}, reference ? 0 : uint32_t(frame - historyStart(frame)));
+    rasterizeSample(state, {}, reference ? 0 : sampleOf(frame, 0));
     if (settings.anti_aliasing == AntiAliasing::fxaa) {
         filterSample();
     }
@@ -337,7 +341,7 @@ FrameResult FrameLoop::State::result() const {
 FrameLoop::FrameLoop(const Scene& scene, const FrameSettings& settings, Workers& workers)
     : state_(std::make_unique<State>(scene, settings, workers)) {
     assert(settings.ssaa_samples >= 1 && settings.ssaa_samples <= 65536);
-    assert(settings.subframes >= 1);
+    assert(settings.subframes >= 1 && settings.first_sample >= 0);
     assert(settings.width >= 1 && settings.width <= kMaxTargetSize);
     assert(settings.height >= 1 && settings.height <= kMaxTargetSize);
 }

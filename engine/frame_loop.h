@@ -33,6 +33,9 @@ struct FrameSettings {
     /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
     /// (a finished picture instead of a raw first frame).
     int subframes = 1;
+    /// Place in the sample sequence, ≥ 0, at which every history begins: two runs whose histories
+    /// differ in length can be compared at equal samples.
+    int first_sample = 0;
     /// Returns milliseconds; when empty no times are taken.
     std::function<double()> clock_ms{};
 };

@@ -83,6 +83,8 @@ class CellRun {
     bool isCompared(int frame) const;
     /// The frame begins a new picture: a cut, or another size.
     bool isCut(int frame) const;
+    /// Samples that a history has taken when it comes to the frame.
+    int samplesBefore(int frame) const;
     std::vector<FrameError> startedAnew(size_t segment) const;
 
     const PreparedCase& prepared_;
@@ -98,6 +100,10 @@ bool CellRun::isCompared(int frame) const {
 
 bool CellRun::isCut(int frame) const {
     return lastCut(prepared_.scene, frame) == frame || prepared_.atlas->resize_frame == frame;
+}
+
+int CellRun::samplesBefore(int frame) const {
+    return isCut(frame) ? 0 : frame - lastCut(prepared_.scene, frame);
 }
 
 void CellRun::runFrame(int frame) {
@@ -117,7 +123,8 @@ void CellRun::runFrame(int frame) {
     }
 }
 
-/// Errors of the compared frames from the event on, of a run that begins at the event.
+/// Errors of the compared frames from the event on, of a run that begins at the event and takes
+/// the same samples.
 std::vector<FrameError> CellRun::startedAnew(size_t segment) const {
     const AtlasCase& atlas = *prepared_.atlas;
     const AtlasSegment& within = atlas.segments[segment];
@@ -126,7 +133,9 @@ std::vector<FrameError> CellRun::startedAnew(size_t segment) const {
     }
     Scene scene = prepared_.scene;
     scene.cuts = {*atlas.event_frame};
-    CaseLoop loop(prepared_, scene, mode_.settings(prepared_.view));
+    FrameSettings settings = mode_.settings(prepared_.view);
+    settings.first_sample = samplesBefore(*atlas.event_frame);
+    CaseLoop loop(prepared_, scene, settings);
     std::vector<FrameError> errors;
     for (int frame = *atlas.event_frame; frame <= within.last; ++frame) {
         const FrameResult result = loop.render(frame);

@@ -31,7 +31,7 @@ struct SegmentMeasures {
     /// Ghost pixels as a share of all pixels of the segment; needs revealed places.
     std::optional<double> ghost_area;
     /// Frames after the case's event in which the past still shows: in which the error is more than
-    /// a tenth above that of the same method started anew at the event.
+    /// a tenth above that of the same method, with the same samples, started anew at the event.
     std::optional<double> recovery_frames;
     std::optional<double> sharpness;  ///< mean over the frames; needs references that are not flat
     /// Median processor time of a frame, one thread, while other cells run beside it. The chart

@@ -202,3 +202,16 @@ TEST_CASE("frame_loop: sharpening follows the resolve and leaves history alone",
         CHECK(hashPlane(after.linear.red) != hashPlane(before.linear.red));
     }
 }
+
+TEST_CASE("frame_loop: first_sample begins the sequence elsewhere", "[unit][frame_loop]") {
+    const Scene scene = ringScene();
+    Workers workers(1);
+    FrameSettings settings = settingsOf(TaaPolicy{});
+    settings.subframes = 3;
+    FrameLoop from_zero(scene, settings, workers);
+    const uint64_t third = hashPlane(from_zero.render(0).gbuffer->red.view());
+    settings.subframes = 1;
+    CHECK(hashPlane(FrameLoop(scene, settings, workers).render(0).gbuffer->red.view()) != third);
+    settings.first_sample = 2;
+    CHECK(hashPlane(FrameLoop(scene, settings, workers).render(0).gbuffer->red.view()) == third);
+}
