@@ -85,7 +85,7 @@ class CellRun {
     bool isCut(int frame) const;
     /// Samples that a history has taken when it comes to the frame.
     int samplesBefore(int frame) const;
-    std::vector<FrameError> startedAnew(size_t segment) const;
+    std::vector<double> startedAnew(size_t segment) const;
 
     const PreparedCase& prepared_;
     const Mode& mode_;
@@ -123,9 +123,9 @@ void CellRun::runFrame(int frame) {
     }
 }
 
-/// Errors of the compared frames from the event on, of a run that begins at the event and takes
-/// the same samples.
-std::vector<FrameError> CellRun::startedAnew(size_t segment) const {
+/// coarseRms() of the compared frames from the event on, of a run that begins at the event and
+/// takes the same samples.
+std::vector<double> CellRun::startedAnew(size_t segment) const {
     const AtlasCase& atlas = *prepared_.atlas;
     const AtlasSegment& within = atlas.segments[segment];
     if (!atlas.event_frame || !isWithin(within, *atlas.event_frame)) {
@@ -136,12 +136,11 @@ std::vector<FrameError> CellRun::startedAnew(size_t segment) const {
     FrameSettings settings = mode_.settings(prepared_.view);
     settings.first_sample = samplesBefore(*atlas.event_frame);
     CaseLoop loop(prepared_, scene, settings);
-    std::vector<FrameError> errors;
+    std::vector<double> errors;
     for (int frame = *atlas.event_frame; frame <= within.last; ++frame) {
         const FrameResult result = loop.render(frame);
         if (const CaseFrame* compared = findFrame(prepared_.segments[segment], frame)) {
-            const auto reference = compared->reference.picture.view();
-            errors.push_back({frame, rmse(pixelError(result.output, reference)), 0});
+            errors.push_back(coarseRms(result.output, compared->reference.picture.view()));
         }
     }
     return errors;

@@ -30,8 +30,9 @@ struct SegmentMeasures {
     std::optional<double> flicker;  ///< see FlickerMeter; needs consecutive frames
     /// Ghost pixels as a share of all pixels of the segment; needs revealed places.
     std::optional<double> ghost_area;
-    /// Frames after the case's event in which the past still shows: in which the error is more than
-    /// a tenth above that of the same method, with the same samples, started anew at the event.
+    /// Frames after the case's event in which the past still shows: in which coarse errors (see
+    /// coarseRms()) are visible, one code or more, and more than a tenth above those of the same
+    /// method, with the same samples, started anew at the event.
     std::optional<double> recovery_frames;
     std::optional<double> sharpness;  ///< mean over the frames; needs references that are not flat
     /// Median processor time of a frame, one thread, while other cells run beside it. The chart

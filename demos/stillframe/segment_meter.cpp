@@ -25,18 +25,57 @@ uint64_t marked(ImageView<const uint8_t> mask) {
     return count;
 }
 
-/// Both errors in units of the newly started method's, of which a quarter of a code is never less.
-double recoveryOf(const std::vector<FrameError>& frames, const std::vector<FrameError>& anew) {
-    constexpr double kLeastRms = 0.25;
+/// Pixels left … right − 1, top … bottom − 1.
+struct Box {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// Signed errors of the channels, summed.
+struct ErrorSum {
+    int r = 0, g = 0, b = 0;
+};
+
+ErrorSum errorOf(ImageView<const Rgb8> picture, ImageView<const Rgb8> reference, const Box& block) {
+    ErrorSum sum;
+    for (int y = block.top; y < block.bottom; ++y) {
+        for (int x = block.left; x < block.right; ++x) {
+            const Rgb8 p = picture.at(x, y);
+            const Rgb8 q = reference.at(x, y);
+            sum.r += p.r - q.r;
+            sum.g += p.g - q.g;
+            sum.b += p.b - q.b;
+        }
+    }
+    return sum;
+}
+
+/// Errors in units of the newly started method's; less than one code cannot be seen.
+double recoveryOf(const std::vector<double>& errors, const std::vector<double>& anew) {
+    constexpr double kInvisible = 1.0;
     std::vector<double> ratios;
-    const size_t before = frames.size() - anew.size();
+    const size_t before = errors.size() - anew.size();
     for (size_t i = 0; i < anew.size(); ++i) {
-        ratios.push_back(frames[before + i].rms / std::max(kLeastRms, anew[i].rms));
+        ratios.push_back(errors[before + i] / std::max(kInvisible, anew[i]));
     }
     return recoveryFrames(ratios, 1.0);
 }
 
 }  // namespace
+
+double coarseRms(ImageView<const Rgb8> picture, ImageView<const Rgb8> reference) {
+    constexpr int kBlock = 8;
+    double sum = 0;
+    for (int top = 0; top < picture.height; top += kBlock) {
+        for (int left = 0; left < picture.width; left += kBlock) {
+            const Box block{left, top, std::min(left + kBlock, picture.width),
+                            std::min(top + kBlock, picture.height)};
+            const ErrorSum e = errorOf(picture, reference, block);
+            const double squares = double(e.r) * e.r + double(e.g) * e.g + double(e.b) * e.b;
+            sum += squares / ((block.right - left) * (block.bottom - top));  // weight × mean²
+        }
+    }
+    return std::sqrt(sum / (3.0 * picture.width * picture.height));
+}
 
 void SegmentMeter::compare(const CaseFrame& frame, ImageView<const Rgb8> picture, bool cut) {
     const ImageView<const Rgb8> reference = frame.reference.picture.view();
@@ -47,6 +86,7 @@ void SegmentMeter::compare(const CaseFrame& frame, ImageView<const Rgb8> picture
     sums_.ssim += ssim(picture, reference);
     sums_.flip += flip;
     sums_.frames.push_back({frame.frame, rmse(error), flip});
+    coarse_.push_back(coarseRms(picture, reference));
     if (const double ratio = sharpnessRatio(reference, picture); std::isfinite(ratio)) {
         sharpness_sum_ += ratio;
         ++sharpness_count_;
@@ -67,7 +107,7 @@ void SegmentMeter::countGhosts(const CaseFrame& frame, ImageView<const Rgb8> pic
     }
 }
 
-Outcome<SegmentMeasures> SegmentMeter::finish(const std::vector<FrameError>& anew) {
+Outcome<SegmentMeasures> SegmentMeter::finish(const std::vector<double>& anew) {
     assert(!sums_.frames.empty() && !times_ms_.empty());
     SegmentMeasures measures = std::move(sums_);
     const double count = double(measures.frames.size());
@@ -81,7 +121,7 @@ Outcome<SegmentMeasures> SegmentMeter::finish(const std::vector<FrameError>& ane
         measures.ghost_area = double(ghosts_) / double(pixels_);
     }
     if (!anew.empty()) {
-        measures.recovery_frames = recoveryOf(measures.frames, anew);
+        measures.recovery_frames = recoveryOf(coarse_, anew);
     }
     if (sharpness_count_ > 0) {
         measures.sharpness = sharpness_sum_ / sharpness_count_;

@@ -7,6 +7,10 @@
 
 namespace still::command {
 
+/// Root mean square of the errors of blocks of 8 × 8 pixels, each the mean of its pixels' signed
+/// errors, in 8-bit codes: aliasing and noise cancel, light and colour of another time do not.
+double coarseRms(ImageView<const Rgb8> picture, ImageView<const Rgb8> reference);
+
 /// Takes the frames of one segment in order.
 class SegmentMeter {
   public:
@@ -15,9 +19,10 @@ class SegmentMeter {
     void addTime(double ms) { times_ms_.push_back(ms); }
     /// `cut`: the frame is not expected to resemble the one before.
     void compare(const CaseFrame& frame, ImageView<const Rgb8> picture, bool cut);
-    /// After at least one time and one comparison. `anew`: errors of the same method started at the
-    /// case's event, of the compared frames from there on; empty when there is no event here.
-    Outcome<SegmentMeasures> finish(const std::vector<FrameError>& anew);
+    /// After at least one time and one comparison. `anew`: coarseRms() of the same method started
+    /// at the case's event, of the compared frames from there on; empty when there is no event
+    /// here.
+    Outcome<SegmentMeasures> finish(const std::vector<double>& anew);
 
   private:
     void countGhosts(const CaseFrame& frame, ImageView<const Rgb8> picture);
@@ -30,6 +35,7 @@ class SegmentMeter {
     double sharpness_sum_ = 0;
     int sharpness_count_ = 0;
     uint64_t ghosts_ = 0, revealed_ = 0, pixels_ = 0;
+    std::vector<double> coarse_;  ///< of all frames
     std::vector<double> times_ms_;
 };
 

@@ -8,6 +8,7 @@
 #include "demos/stillframe/cell_store.h"
 #include "demos/stillframe/error_crop.h"
 #include "demos/stillframe/file_cache.h"
+#include "demos/stillframe/segment_meter.h"
 #include "rasterizer/workers.h"
 #include "tests/cli/shell.h"
 #include "tests/support/data_path.h"
@@ -177,6 +178,24 @@ TEST_CASE("cell store: measures come back as they went, also those that do not a
     CHECK(second.crop_x == -5);
     CHECK_FALSE(command::cellFromBytes(bytes.substr(0, bytes.size() - 1)).has_value());
     CHECK_FALSE(command::cellFromBytes("x " + bytes).has_value());
+}
+
+TEST_CASE("coarse error: what alternates cancels, what is off everywhere stays", "[cli]") {
+    Image<Rgb8> reference(21, 13), alternating(21, 13), brighter(21, 13);
+    for (int y = 0; y < 13; ++y) {
+        for (int x = 0; x < 21; ++x) {
+            reference.at(x, y) = {100, 100, 100};
+            const uint8_t value = (x + y) % 2 == 0 ? 110 : 90;
+            alternating.at(x, y) = {value, value, value};
+            brighter.at(x, y) = {105, 105, 105};
+        }
+    }
+    const auto coarse = [&](const Image<Rgb8>& picture) {
+        return command::coarseRms(picture.view(), std::as_const(reference).view());
+    };
+    CHECK(coarse(reference) == 0);
+    CHECK(coarse(alternating) < 0.3);  // blocks at the border have an odd number of pixels
+    CHECK(coarse(brighter) == Approx(5));
 }
 
 TEST_CASE("error crop: the worst window of all frames is cut out", "[cli]") {
