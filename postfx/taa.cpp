@@ -11,6 +11,7 @@
 
 #include "postfx/internal/kernels.h"
 #include "postfx/internal/rules.h"
+#include "postfx/internal/started.h"
 #include "postfx/spatial.h"
 
 namespace still {
@@ -74,6 +75,8 @@ struct Taa::State {
     std::vector<TileMemory> tiles;
     std::vector<uint32_t> change_age;  ///< empty until something changes
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
+    taa::StartedSurfaces started;
+    bool first = true;  ///< this frame has no past
     SpatialFilter spatial;
 
     TileRect rectOf(int tile) const {
@@ -88,6 +91,7 @@ struct Taa::State {
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
                    Workers& workers);
+    void forgetStarted(const GBuffer& gbuffer, Workers& workers);
     void keepAndSum(const GBuffer& gbuffer, const Job& job, const taa::TileKernels& kernels,
                     bool shading_changed, int tile);
 };
@@ -119,6 +123,7 @@ void Taa::State::begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaS
     if (frames == 0 || settings.sample_cap < sample_cap) {  // complete sums may have too much
         tiles.assign(gbuffer.tiles.size(), TileMemory{});
     }
+    first = frames == 0;
 }
 
 /// Keeps for each surface how many kept frames ago its shading changed; `now`: some did.
@@ -198,15 +203,30 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     return job;
 }
 
+/// Before this frame is kept: the cursor's slot still holds the last one.
+void Taa::State::forgetStarted(const GBuffer& gbuffer, Workers& workers) {
+    if (!started.any()) {
+        return;
+    }
+    const Image<uint32_t>& last = ring[size_t(cursor)].blue_surface;
+    workers.parallelFor(int(tiles.size()), 1, [&](int begin, int end, int) {
+        for (int tile = begin; tile < end; ++tile) {
+            if (tiles[size_t(tile)].summed && disturbed(gbuffer, tile)) {
+                taa::forgetStarted(started, last.view(), rectOf(tile), count.view());
+            }
+        }
+    });
+}
+
 void Taa::State::keepAndSum(const GBuffer& gbuffer, const Job& job, const taa::TileKernels& kernels,
                             bool shading_changed, int tile) {
     TileMemory& memory = tiles[size_t(tile)];
     kernels.record(job, rectOf(tile));
-    if (job.camera_moved && frames > 1) {
+    if (job.camera_moved && !first) {
         memory = {};
         return;
     }
-    const bool tested = frames > 1 && (shading_changed || disturbed(gbuffer, tile));
+    const bool tested = shading_changed || disturbed(gbuffer, tile);
     if (!tested && memory.summed && memory.finished && job.sample_cap == sample_cap) {
         memory.changed = false;
         return;
@@ -239,7 +259,8 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     assert(settings.ring >= 1 && settings.ring <= kMaxRing);
     State& s = *state_;
     s.begin(gbuffer, frame, settings);
-    const bool shading_changed = changesShading(frame);
+    const bool shading_changed = !s.first && changesShading(frame);
+    s.started.note(gbuffer, s.first, workers);
     if (s.nothingToDo(gbuffer, shading_changed, settings.sample_cap)) {
         for (TileMemory& tile : s.tiles) {
             tile.changed = false;
@@ -247,6 +268,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
         return;
     }
     s.noteChanges(frame, shading_changed);
+    s.forgetStarted(gbuffer, workers);
     s.cursor = (s.cursor + 1) % settings.ring;
     s.frames = std::min(s.frames + 1, settings.ring);
     s.ring[size_t(s.cursor)].jitter_x_fx8 = frame.jitter_x_fx8;
@@ -259,7 +281,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
         }
     });
     s.sample_cap = settings.sample_cap;
-    if (s.frames == 1) {
+    if (s.first) {
         s.showFirst(gbuffer, frame, settings.simd, workers);
         return;
     }

@@ -1,0 +1,36 @@
+#pragma once
+// Things that begin to move leave their samples behind in the sums of pixels they no longer touch.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "postfx/internal/ring.h"
+#include "rasterizer/gbuffer.h"
+#include "rasterizer/workers.h"
+
+namespace still::taa {
+
+/// Surfaces that are seen moving now and were not in the frame before.
+class StartedSurfaces {
+  public:
+    /// Once per frame, in order. After `first` nothing has started.
+    void note(const GBuffer& gbuffer, bool first, Workers& workers);
+
+    bool any() const { return any_; }
+    bool contains(int surface) const {
+        return ((started_[size_t(surface) / 64] >> (size_t(surface) % 64)) & 1) != 0;
+    }
+
+  private:
+    using Bits = std::array<uint64_t, (size_t(kSurfaceMask) + 1) / 64>;
+    Bits now_{}, before_{}, started_{};
+    bool any_ = false;
+};
+
+/// Takes their sums from the tile's pixels whose 3×3 window showed a started surface in the last
+/// frame, whose blue_surface plane is `last`.
+void forgetStarted(const StartedSurfaces& started, ImageView<const uint32_t> last,
+                   const TileRect& tile, ImageView<uint8_t> count) noexcept;
+
+}  // namespace still::taa
