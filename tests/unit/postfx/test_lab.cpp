@@ -1,4 +1,5 @@
-// The laboratory's rules on small worlds and single pixels with known answers.
+// The laboratory's rules on small worlds and single pixels with known answers: blends, history,
+// tests of history.
 
 #include <algorithm>
 #include <bit>
@@ -6,99 +7,16 @@
 #include <cmath>
 #include <vector>
 
-#include "postfx/laboratory.h"
-#include "rasterizer/fixed.h"
+#include "lab_bench.h"
 #include "synthetic.h"
 
-using namespace still;
+using namespace lab_bench;
 using synthetic::Colour;
 using synthetic::Layer;
 using synthetic::Point;
 using synthetic::World;
 
 namespace {
-
-constexpr int kWidth = 24, kHeight = 20;
-
-/// Alpha 0.25, everything else off: tests switch on what they look at.
-TaaPolicy plain() {
-    TaaPolicy p;
-    p.method = Method::recursive;
-    p.alpha_q15 = 8192;
-    p.dilation = Dilation::centre;
-    p.history = HistoryFilter::bilinear;
-    p.rectification = Rectification::off;
-    p.space = ColourSpace::rgb;
-    return p;
-}
-
-/// A picture of one flat surface that tests draw into.
-struct Bench {
-    GBuffer gbuffer;
-    Laboratory laboratory;
-    Workers workers{1, Schedule::serial};
-
-    explicit Bench(int grey = 1000) {
-        gbuffer.resize(kWidth, kHeight, {.normal = true, .motion = true});
-        fill(grey);
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
-                gbuffer.id.at(x, y) = 1;
-                gbuffer.motion.at(x, y) = {};
-            }
-        }
-        setDepth(0.25f);
-        setNormal(0, 0);
-    }
-
-    void fill(int grey) { fill(grey, grey, grey); }
-    void fill(int red, int green, int blue) {
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
-                set(x, y, red, green, blue);
-            }
-        }
-    }
-    void set(int x, int y, int red, int green, int blue) {
-        gbuffer.red.at(x, y) = uint16_t(red);
-        gbuffer.green.at(x, y) = uint16_t(green);
-        gbuffer.blue.at(x, y) = uint16_t(blue);
-    }
-    void setDepth(float depth, float before = 0) {
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
-                gbuffer.depth.at(x, y) = std::bit_cast<uint32_t>(depth);
-                gbuffer.depth_before.at(x, y) =
-                    logDepth16(std::bit_cast<uint32_t>(before > 0 ? before : depth));
-            }
-        }
-    }
-    void setNormal(int x, int y) {
-        for (int row = 0; row < kHeight; ++row) {
-            std::fill_n(gbuffer.normal.view().row(row), kWidth,
-                        (uint32_t(x) & 0xFFFF) | uint32_t(y) << 16);
-        }
-    }
-    void setMotion(int x_fx8, int y_fx8) {
-        for (int y = 0; y < kHeight; ++y) {
-            std::fill_n(gbuffer.motion.view().row(y), kWidth,
-                        Motion{int16_t(x_fx8), int16_t(y_fx8)});
-        }
-    }
-    void setId(int id) {
-        for (int y = 0; y < kHeight; ++y) {
-            std::fill_n(gbuffer.id.view().row(y), kWidth, uint16_t(id));
-        }
-    }
-
-    void show(const TaaPolicy& policy, bool reset = false) {
-        laboratory.resolve(gbuffer, {.reset = reset}, policy, bestSimdTarget(), workers);
-    }
-    int red(int x = 10, int y = 10) const { return laboratory.colour().red.at(x, y); }
-    int green(int x = 10, int y = 10) const { return laboratory.colour().green.at(x, y); }
-    int blue(int x = 10, int y = 10) const { return laboratory.colour().blue.at(x, y); }
-    int confidence(int x = 10, int y = 10) const { return laboratory.confidence().at(x, y); }
-};
 
 /// What red 1000 becomes after one frame of 2000.
 int afterStep(const TaaPolicy& policy) {
@@ -348,92 +266,6 @@ TEST_CASE("lab: history filters interpolate, and dering keeps within the inner t
     }
 }
 
-TEST_CASE("lab: rectification gives the values worked out by hand", "[postfx][unit]") {
-    // Window: eight samples of 800, one corner of 1700. μ = 900, σ² = 80000, σ = 282.8.
-    const auto rectified = [](Rectification rectification, int history, int sigma_fx8 = 256) {
-        TaaPolicy policy = plain();
-        policy.alpha_q15 = 0;
-        policy.rectification = rectification;
-        policy.sigma_fx8 = sigma_fx8;
-        Bench bench(history);
-        bench.show(policy);
-        bench.fill(800);
-        bench.set(9, 9, 1700, 1700, 1700);
-        bench.show(policy);
-        return bench.red();
-    };
-    CHECK(rectified(Rectification::off, 3000) == 3000);
-    CHECK(rectified(Rectification::clamp, 3000) == 1700);
-    CHECK(rectified(Rectification::clamp, 100) == 800);
-    CHECK(rectified(Rectification::clamp, 1234) == 1234);
-    CHECK(std::abs(rectified(Rectification::clip, 3000) - 1700) <= 1);
-    CHECK(rectified(Rectification::clip, 1234) == 1234);
-    // The plus-shaped box is 800 … 800, so the rounded one 800 … 1250.
-    CHECK(std::abs(rectified(Rectification::rounded_clip, 3000) - 1250) <= 1);
-    CHECK(rectified(Rectification::rounded_clip, 1000) == 1000);
-    for (const auto kind : {Rectification::variance_clamp, Rectification::variance_clip}) {
-        CHECK(std::abs(rectified(kind, 3000) - 1183) <= 5);
-        CHECK(std::abs(rectified(kind, 100) - 617) <= 5);
-        CHECK(rectified(kind, 1150) == 1150);
-        CHECK(std::abs(rectified(kind, 3000, 512) - 1466) <= 10);
-        CHECK(rectified(kind, 3000, 0) == 900);
-    }
-}
-
-TEST_CASE("lab: clipping keeps the hue that clamping bends", "[postfx][unit]") {
-    const auto rectified = [](Rectification rectification, ColourSpace space) {
-        TaaPolicy policy = plain();
-        policy.alpha_q15 = 0;
-        policy.rectification = rectification;
-        policy.space = space;
-        Bench bench;
-        bench.fill(5000, 2000, 1000);
-        bench.show(policy);
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
-                const int grey = (x + y) % 2 == 0 ? 500 : 1500;
-                bench.set(x, y, grey, grey, grey);
-            }
-        }
-        bench.show(policy);
-        return std::vector<int>{bench.red(), bench.green(), bench.blue()};
-    };
-    // From the box's middle, 1000, the line to (5000, 2000, 1000) leaves it at an eighth.
-    CHECK(rectified(Rectification::clamp, ColourSpace::rgb) == std::vector<int>{1500, 1500, 1000});
-    CHECK(rectified(Rectification::clip, ColourSpace::rgb) == std::vector<int>{1500, 1125, 1000});
-    // In YCoCg grey samples leave no room for chroma.
-    CHECK(rectified(Rectification::clamp, ColourSpace::ycocg) ==
-          std::vector<int>{1500, 1500, 1500});
-    CHECK(rectified(Rectification::clip, ColourSpace::ycocg) == std::vector<int>{1000, 1000, 1000});
-}
-
-TEST_CASE("lab: a wider box at rest shrinks with speed", "[postfx][unit]") {
-    const auto rectified = [](int motion_fx8) {
-        TaaPolicy policy = plain();
-        policy.alpha_q15 = 0;
-        policy.rectification = Rectification::variance_clamp;
-        policy.sigma_fx8 = 256;
-        policy.sigma_still_fx8 = 768;
-        policy.sigma_speed = 8;
-        Bench bench(8000);
-        bench.show(policy);
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
-                const int grey = 1000 + 1000 * (x % 3);
-                bench.set(x, y, grey, grey, grey);
-            }
-        }
-        bench.setMotion(motion_fx8, 0);
-        bench.show(policy);
-        return bench.red();
-    };
-    // σ = 816.5 around 2000.
-    CHECK(std::abs(rectified(0) - 4449) <= 30);
-    CHECK(std::abs(rectified(4 * 256) - (2000 + 1225)) <= 30);  // k = 1 + 2 / 4
-    CHECK(std::abs(rectified(8 * 256) - 2816) <= 15);
-    CHECK(std::abs(rectified(9 * 256) - 2816) <= 15);
-}
-
 TEST_CASE("lab: anti-flicker weights follow their formulas", "[postfx][unit]") {
     TaaPolicy policy = plain();
     policy.alpha_q15 = 16384;
@@ -473,33 +305,6 @@ TEST_CASE("lab: tone-mapped blending hides what is far brighter", "[postfx][unit
         CHECK(std::abs(bench.red() - grey) <= grey / 100);
         CHECK(std::abs(bench.green() - grey / 2) <= grey / 100);
     }
-}
-
-TEST_CASE("lab: sample filters keep flat pictures and move with the jitter", "[postfx][unit]") {
-    for (int filter = 0; filter <= int(SampleFilter::lanczos2); ++filter) {
-        TaaPolicy policy = plain();
-        policy.sample = SampleFilter(filter);
-        Bench bench(1234);
-        for (const int jitter : {0, 100, -128}) {
-            bench.laboratory.resolve(bench.gbuffer, {true, jitter, -jitter}, policy,
-                                     bestSimdTarget(), bench.workers);
-            CHECK(bench.red() == 1234);
-            CHECK(bench.red(0, 0) == 1234);
-        }
-    }
-    TaaPolicy policy = plain();
-    policy.sample = SampleFilter::triangle;
-    Bench bench;
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-            bench.set(x, y, 256 * x, 256 * y, 0);
-        }
-    }
-    // Samples lie 50/256 right of the centres, so the centres lie between this and the left one.
-    bench.laboratory.resolve(bench.gbuffer, {true, 50, -20}, policy, bestSimdTarget(),
-                             bench.workers);
-    CHECK(std::abs(bench.red() - (2560 - 50)) <= 1);
-    CHECK(std::abs(bench.green() - (2560 + 20)) <= 1);
 }
 
 TEST_CASE("lab: reset, another size and another policy start anew", "[postfx][unit]") {
