@@ -93,37 +93,52 @@ HWY_INLINE void fetchRow(const uint32_t* plane, VI32 index, Mask32 lanes, V32& l
 struct Samples {
     Four red_green, blue_surface, depths;
 };
-HWY_INLINE void fetchRow(const SlotIn& slot, VI32 index, Mask32 lanes, int row, Samples& s) {
+
+HWY_INLINE Four loadFour(const uint32_t* plane, ptrdiff_t upper, ptrdiff_t lower) {
     const D32 d;
-    V32* rg = s.red_green.of + 2 * row;
-    V32* bs = s.blue_surface.of + 2 * row;
-    V32* dd = s.depths.of + 2 * row;
-    forClusters(
-        index, lanes,
-        [&](int32_t offset, Mask32 same) {
-            for (int i = 0; i < 2; ++i) {
-                rg[i] = choose(same, hn::LoadU(d, slot.red_green + offset + i), rg[i]);
-                bs[i] = choose(same, hn::LoadU(d, slot.blue_surface + offset + i), bs[i]);
-                dd[i] = choose(same, hn::LoadU(d, slot.depths + offset + i), dd[i]);
-            }
-        },
-        [&](Mask32 rest) {
-            for (int i = 0; i < 2; ++i) {
-                rg[i] = choose(rest, hn::GatherIndex(d, slot.red_green + i, index), rg[i]);
-                bs[i] = choose(rest, hn::GatherIndex(d, slot.blue_surface + i, index), bs[i]);
-                dd[i] = choose(rest, hn::GatherIndex(d, slot.depths + i, index), dd[i]);
-            }
-        });
+    return {{hn::LoadU(d, plane + upper), hn::LoadU(d, plane + upper + 1),
+             hn::LoadU(d, plane + lower), hn::LoadU(d, plane + lower + 1)}};
+}
+
+HWY_INLINE void takeFour(Mask32 lanes, const uint32_t* plane, ptrdiff_t upper, ptrdiff_t lower,
+                         Four& four) {
+    const D32 d;
+    four.of[0] = choose(lanes, hn::LoadU(d, plane + upper), four.of[0]);
+    four.of[1] = choose(lanes, hn::LoadU(d, plane + upper + 1), four.of[1]);
+    four.of[2] = choose(lanes, hn::LoadU(d, plane + lower), four.of[2]);
+    four.of[3] = choose(lanes, hn::LoadU(d, plane + lower + 1), four.of[3]);
 }
 
 HWY_INLINE Samples fetchSamples(const SlotIn& slot, const Address& address) {
-    const V32 zero = hn::Zero(D32());
-    Samples s;
-    for (int i = 0; i < 4; ++i) {
-        s.red_green.of[i] = s.blue_surface.of[i] = s.depths.of[i] = zero;
+    const D32 d;
+    const DI32 di;
+    const VI32 lane = hn::Iota(di, 0);
+    const VI32 upper = hn::Sub(address.upper, lane), lower = hn::Sub(address.lower, lane);
+    const ptrdiff_t upper0 = hn::GetLane(upper), lower0 = hn::GetLane(lower);
+    Samples s{loadFour(slot.red_green, upper0, lower0), loadFour(slot.blue_surface, upper0, lower0),
+              loadFour(slot.depths, upper0, lower0)};
+    const auto differ = [&](ptrdiff_t u, ptrdiff_t l) {
+        const VI32 other = hn::Or(hn::Xor(upper, hn::Set(di, int32_t(u))),
+                                  hn::Xor(lower, hn::Set(di, int32_t(l))));
+        return hn::Not(maskOf(hn::Eq(other, hn::Zero(di))));
+    };
+    Mask32 left = hn::And(address.lanes, differ(upper0, lower0));
+    if (hn::AllFalse(d, left)) {
+        return s;
     }
-    fetchRow(slot, address.upper, address.lanes, 0, s);
-    fetchRow(slot, address.lower, address.lanes, 1, s);
+    alignas(64) int32_t uppers[kMaxLanes], lowers[kMaxLanes];
+    hn::Store(upper, di, uppers);
+    hn::Store(lower, di, lowers);
+    while (!hn::AllFalse(d, left)) {
+        const intptr_t first = hn::FindFirstTrue(d, left);
+        const ptrdiff_t u = uppers[first], l = lowers[first];
+        const Mask32 others = hn::And(left, differ(u, l));
+        const Mask32 same = hn::AndNot(others, left);
+        takeFour(same, slot.red_green, u, l, s.red_green);
+        takeFour(same, slot.blue_surface, u, l, s.blue_surface);
+        takeFour(same, slot.depths, u, l, s.depths);
+        left = others;
+    }
     return s;
 }
 
@@ -155,7 +170,7 @@ struct WindowLanes {
     LayerLanes owner, far;
     V32 normal;
     VI32 slide;
-    Mask32 moved, layered, apart;
+    Mask32 moved, layered, apart, flat;
 };
 
 /// The accepted samples of the group's pixels.
@@ -348,10 +363,20 @@ HWY_INLINE void keep(const Site& site, const Samples& samples, const V32 weight[
     kept.xy = hn::Add(kept.xy, hn::Add(hn::Mul(ly, x0), hn::Mul(ry, x1)));
 }
 
+/// A tile's row is only one or two cache lines of each of many planes, too short for the hardware
+/// to see a pattern: the same place a few rows on is asked for in time.
+constexpr int kRowsAhead = 2;
+HWY_INLINE void prefetchAhead(const SlotIn& slot, ptrdiff_t at) {
+    for (const uint32_t* plane :
+         {slot.red_green, slot.blue_surface, slot.depths, slot.owner, slot.motion}) {
+        hwy::Prefetch(plane + at);
+    }
+}
+
 /// follow(): the group's pixels x … along `layer`, where `active`.
 template <class Rule>
 HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, Mask32 active,
-                        const Rule& rule, Kept& kept) {
+                        Mask32 brief, int frames, const Rule& rule, Kept& kept) {
     const D32 d;
     const DI32 di;
     kept.clear();
@@ -359,8 +384,11 @@ HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, M
     VI32 px = hn::ShiftLeft<8>(hn::Iota(di, x));
     VI32 py = hn::Set(di, y * 256);
     Mask32 alive = active;
-    for (int k = 0; k < job.frames; ++k) {
+    for (int k = 0; k < frames; ++k) {
         const SlotIn& slot = job.slot[k];
+        if (k == kFlatFrames) {
+            alive = hn::AndNot(brief, alive);
+        }
         if (k > 0) {
             const Mask32 ends = maskOf(hn::Eq(lowSigned(motion), hn::Set(di, kNoHistory)));
             alive = hn::AndNot(ends, alive);
@@ -372,6 +400,9 @@ HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, M
         }
         const Site site = siteOf(job, px, py, slot, alive);
         const Address address = addressOf(job, site);
+        if ((x & 15) == 0) {
+            prefetchAhead(slot, hn::GetLane(address.lower) + kRowsAhead * job.stride);
+        }
         const Samples samples = fetchSamples(slot, address);
         V32 weight[4] = {site.weight[0], site.weight[1], site.weight[2], site.weight[3]};
         V32 behind[4];
@@ -383,7 +414,7 @@ HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, M
             }
         }
         keep(site, samples, weight, behind, k > 0, kept);
-        if (k + 1 == job.frames) {
+        if (k + 1 == frames) {
             return;
         }
         const Mask32 right = maskOf(atLeast(asSigned(site.fx), hn::Set(di, 128)));
@@ -509,7 +540,7 @@ HWY_INLINE Mask32 fitLanes(const Kept& kept, const Colour* behind, Mask32 separa
 
 /// lookAround() for the pixels at `at`, whose owners stand in this frame's record.
 HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen, const Owners& far,
-                                Mask32 pixels) {
+                                Mask32 calm, Mask32 pixels) {
     const D32 d;
     const DI32 di;
     const V32 surface_mask = hn::Set(d, kSurfaceMask);
@@ -537,6 +568,7 @@ HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen
     w.far.motion = far.motion;
     const VI32 height = hn::Sub(w.owner.depth, w.far.depth);
     w.layered = maskOf(hn::Gt(height, hn::Add(tolerance, hn::Add(sloped, sloped))));
+    w.flat = hn::AndNot(hn::Or(w.layered, inferred), calm);
     w.slide = slideOf(w.owner.motion, w.far.motion);
     const VI32 none = hn::Set(di, kNoHistory);
     const Mask32 known = hn::Not(maskOf(
@@ -573,11 +605,11 @@ HWY_INLINE void mixSpatialLanes(const Job& job, int x, int y, VI32 old_weight, M
 }
 
 HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Owners& seen, const Owners& far,
-                            Mask32 pixels) {
+                            Mask32 calm, Mask32 pixels) {
     const D32 d;
     const DI32 di;
     const ptrdiff_t at = y * job.stride + x;
-    const WindowLanes window = windowOf(job, at, seen, far, pixels);
+    const WindowLanes window = windowOf(job, at, seen, far, calm, pixels);
     Colour colour;
     for (int c = 0; c < 3; ++c) {
         colour.of[c] = load16(job.now.colour[c] + at);
@@ -587,14 +619,16 @@ HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Owners& seen, co
     Mask32 separate = hn::MaskFromVec(hn::Zero(d));
     const bool any_apart = !hn::AllFalse(d, window.apart);
     if (any_apart) {
-        collect(job, x, y, window.far, window.apart, FarRule{job, window}, kept);
+        collect(job, x, y, window.far, window.apart, separate, std::min(kFarFrames, job.frames),
+                FarRule{job, window}, kept);
         separate = hn::And(fitLanes(kept, nullptr, separate, behind), window.apart);
     }
     const bool any_moved = !hn::AllFalse(d, window.moved);
     const OwnRule rule{job, window, decodeNormals(window.normal), any_moved};
-    collect(job, x, y, window.owner, pixels, rule, kept);
+    collect(job, x, y, window.owner, pixels, window.flat, job.frames, rule, kept);
     fitLanes(kept, any_apart ? &behind : nullptr, separate, colour);
-    const Mask32 lone = hn::And(pixels, maskOf(hn::Lt(kept.old_weight, hn::Set(di, kFrameWeight))));
+    const Mask32 lone = hn::And(hn::AndNot(window.flat, pixels),
+                                maskOf(hn::Lt(kept.old_weight, hn::Set(di, kFrameWeight))));
     if (!hn::AllFalse(d, lone)) {
         mixSpatialLanes(job, x, y, kept.old_weight, lone, colour);
     }
@@ -606,14 +640,61 @@ HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Owners& seen, co
     store8(choose(pixels, count, load8(job.shown_count + at)), job.shown_count + at);
 }
 
+/// Smallest and largest of each column of three, by channel; columns as in OwnerStrip.
+struct ContrastStrip {
+    alignas(64) uint16_t low[3][OwnerStrip::kWidth], high[3][OwnerStrip::kWidth];
+};
+
+HWY_INLINE void fillContrast(const Job& job, const TileRect& tile, int y, ContrastStrip& strip) {
+    const hn::ScalableTag<uint16_t> d;
+    const int lanes = int(hn::Lanes(d));
+    const ptrdiff_t up = y > 0 ? -job.stride : 0;
+    const ptrdiff_t down = y + 1 < job.height ? job.stride : 0;
+    for (int c = 0; c < 3; ++c) {
+        for (int i = 0; i < OwnerStrip::kWidth; i += lanes) {
+            const uint16_t* at = job.now.colour[c] + y * job.stride + tile.x0 - kMaxLanes + i;
+            const auto a = hn::LoadU(d, at + up), b = hn::LoadU(d, at), e = hn::LoadU(d, at + down);
+            hn::StoreU(hn::Min(hn::Min(a, b), e), d, strip.low[c] + i);
+            hn::StoreU(hn::Max(hn::Max(a, b), e), d, strip.high[c] + i);
+        }
+        if (tile.x0 == 0) {
+            strip.low[c][kMaxLanes - 1] = strip.low[c][kMaxLanes];
+            strip.high[c][kMaxLanes - 1] = strip.high[c][kMaxLanes];
+        }
+        if (tile.x1 == job.width) {
+            const int last = kMaxLanes + tile.x1 - tile.x0 - 1;
+            strip.low[c][last + 1] = strip.low[c][last];
+            strip.high[c][last + 1] = strip.high[c][last];
+        }
+    }
+}
+
+/// lowContrast()
+HWY_INLINE Mask32 calmLanes(const ContrastStrip& strip, int x_in_tile) {
+    const DI32 di;
+    const int i = kMaxLanes + x_in_tile;
+    Mask32 calm = hn::Not(hn::MaskFromVec(hn::Zero(D32())));
+    for (int c = 0; c < 3; ++c) {
+        const uint16_t* l = strip.low[c] + i;
+        const uint16_t* h = strip.high[c] + i;
+        const V32 low = hn::Min(hn::Min(load16(l - 1), load16(l)), load16(l + 1));
+        const VI32 high = asSigned(hn::Max(hn::Max(load16(h - 1), load16(h)), load16(h + 1)));
+        const VI32 bound = hn::Add(hn::ShiftRight<kFlatShift>(high), hn::Set(di, 4));
+        calm = hn::And(calm, maskOf(atMost(hn::Sub(high, asSigned(low)), bound)));
+    }
+    return calm;
+}
+
 HWY_ATTR void gatherTile(const Job& job, const TileRect& tile, bool sums_valid) noexcept {
     const D32 d;
     const DI32 di;
     const int lanes = int(hn::Lanes(d));
     OwnerStrip near_strip, far_strip;
+    ContrastStrip contrast;
     for (int y = tile.y0; y < tile.y1; ++y) {
-        fillStrip<Nearest>(job, tile, y, near_strip);
-        fillStrip<Farthest>(job, tile, y, far_strip);
+        fillStrip<Nearest, kIdDepth>(job, tile, y, near_strip);
+        fillStrip<Farthest, kWithMotion>(job, tile, y, far_strip);
+        fillContrast(job, tile, y, contrast);
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             Mask32 pixels = lanesBefore(tile.x1 - x);
             if (sums_valid) {
@@ -621,8 +702,9 @@ HWY_ATTR void gatherTile(const Job& job, const TileRect& tile, bool sums_valid) 
                 pixels = hn::And(pixels, maskOf(hn::Lt(asSigned(count), hn::Set(di, job.settled))));
             }
             if (!hn::AllFalse(d, pixels)) {
-                gatherGroup(job, x, y, ownersOf<Nearest>(near_strip, x - tile.x0),
-                            ownersOf<Farthest>(far_strip, x - tile.x0), pixels);
+                gatherGroup(job, x, y, ownersOf<Nearest, kIdDepth>(near_strip, x - tile.x0),
+                            ownersOf<Farthest, kWithMotion>(far_strip, x - tile.x0),
+                            calmLanes(contrast, x - tile.x0), pixels);
             }
         }
     }

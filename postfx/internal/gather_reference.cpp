@@ -45,6 +45,7 @@ struct Window {
     bool moved = false;
     bool layered = false;  ///< two surfaces, one behind the other
     bool apart = false;    ///< … that move differently …
+    bool flat = false;     ///< one surface, next to no contrast
     int slide = 0;         ///< … by this much per frame (1/256 pixel, larger axis)
 };
 
@@ -87,6 +88,21 @@ int slideOf(Motion a, Motion b) {
     return std::max(std::abs(a.x_fx8 - b.x_fx8), std::abs(a.y_fx8 - b.y_fx8));
 }
 
+bool lowContrast(const Job& job, int x, int y) {
+    bool flat = true;
+    for (const uint16_t* plane : job.now.colour) {
+        int low = 65535, high = 0;
+        for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
+            for (int i = std::max(x - 1, 0); i <= std::min(x + 1, job.width - 1); ++i) {
+                low = std::min<int>(low, plane[j * job.stride + i]);
+                high = std::max<int>(high, plane[j * job.stride + i]);
+            }
+        }
+        flat &= high - low <= flatRange(high);
+    }
+    return flat;
+}
+
 Window lookAround(const Job& job, int x, int y) {
     const Owner seen = inferOwner(job, x, y, seenOwner(job, x, y));
     Window window;
@@ -98,6 +114,7 @@ Window lookAround(const Job& job, int x, int y) {
                          job.now.depth_before[far], job.now.motion[far], 0);
     window.layered =
         window.owner.depth - window.far.depth > kDepthTolerance + 2 * kSlopeFactor * seen.slope;
+    window.flat = !window.layered && !seen.inferred && lowContrast(job, x, y);
     window.slide = slideOf(seen.motion, window.far.motion);
     window.apart = window.layered && seen.motion.x_fx8 != kNoHistory &&
                    window.far.motion.x_fx8 != kNoHistory && window.slide > kApart;
@@ -121,10 +138,10 @@ bool staleShading(const Job& job, const Window& window, int k, Place place, cons
 /// Follows `layer` back and calls visit(k, slot, at, weight, ex, ey, motion) for every sample with
 /// a weight, where motion is the layer's way from the frame after to frame k.
 template <class Visit>
-void follow(const Job& job, int x, int y, const Layer& layer, Visit&& visit) {
+void follow(const Job& job, int x, int y, const Layer& layer, int frames, Visit&& visit) {
     Motion motion = layer.motion;
     int px = x * 256, py = y * 256;
-    for (int k = 0; k < job.frames; ++k) {
+    for (int k = 0; k < frames; ++k) {
         const SlotIn& slot = job.slot[k];
         if (k > 0) {
             if (motion.x_fx8 == kNoHistory) {
@@ -172,7 +189,7 @@ void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, int k, int weight, int
 
 /// The farther layer's samples, where the owner did not hide it.
 void collectFar(const Job& job, int x, int y, const Window& window, Taps& taps) {
-    follow(job, x, y, window.far,
+    follow(job, x, y, window.far, std::min(kFarFrames, job.frames),
            [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion) {
                const int surface = highHalf(slot.blue_surface[at]);
                const int depth = lowHalf(slot.depths[at]);
@@ -193,7 +210,8 @@ bool leftBehind(const Window& window, int k, int depth) {
 
 /// Samples along the owner's way: its own, and what was seen beside it.
 void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps) {
-    follow(job, x, y, window.owner,
+    const int frames = window.flat ? std::min(kFlatFrames, job.frames) : job.frames;
+    follow(job, x, y, window.owner, frames,
            [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion motion) {
                const int surface = highHalf(slot.blue_surface[at]);
                const int depth = lowHalf(slot.depths[at]);
@@ -280,7 +298,7 @@ void gatherPixel(const Job& job, int x, int y) noexcept {
             rgb[c] = job.now.colour[c][at];
         }
     }
-    if (taps.old_weight < kFrameWeight) {
+    if (taps.old_weight < kFrameWeight && !window.flat) {
         mixSpatial(job, x, y, taps.old_weight, rgb);
     }
     for (int c = 0; c < 3; ++c) {

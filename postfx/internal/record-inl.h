@@ -20,11 +20,21 @@ struct Owners {
     V32 depth, id, motion, expected, normal;
 };
 
+/// Which of the planes a strip is asked for; the others are zero.
+enum Planes : int { kIdDepth = 0, kWithMotion = 1, kWithNormal = 2 };
+
+template <int kPlanes>
 HWY_INLINE Owners samplesAt(const Current& now, ptrdiff_t at) {
     const D32 d;
-    return {hn::LoadU(d, now.depth + at), load16(now.id + at), loadMotion(now.motion + at),
-            load16(now.depth_before + at),
-            now.normal != nullptr ? compacted(hn::LoadU(d, now.normal + at)) : hn::Zero(d)};
+    Owners o{hn::LoadU(d, now.depth + at), load16(now.id + at), hn::Zero(d),
+             load16(now.depth_before + at), hn::Zero(d)};
+    if ((kPlanes & kWithMotion) != 0) {
+        o.motion = loadMotion(now.motion + at);
+    }
+    if ((kPlanes & kWithNormal) != 0 && now.normal != nullptr) {
+        o.normal = compacted(hn::LoadU(d, now.normal + at));
+    }
+    return o;
 }
 
 HWY_INLINE void takeWhere(Mask32 better, Owners& best, const Owners& other) {
@@ -49,36 +59,44 @@ struct Farthest {
     }
 };
 
+template <int kPlanes>
 HWY_INLINE void storeStrip(const Owners& owners, OwnerStrip& strip, int i) {
     const D32 d;
     hn::StoreU(owners.depth, d, strip.depth + i);
     hn::StoreU(owners.id, d, strip.id + i);
-    hn::StoreU(owners.motion, d, strip.motion + i);
     hn::StoreU(owners.expected, d, strip.expected + i);
-    hn::StoreU(owners.normal, d, strip.normal + i);
+    if ((kPlanes & kWithMotion) != 0) {
+        hn::StoreU(owners.motion, d, strip.motion + i);
+    }
+    if ((kPlanes & kWithNormal) != 0) {
+        hn::StoreU(owners.normal, d, strip.normal + i);
+    }
 }
 
+template <int kPlanes>
 HWY_INLINE Owners loadStrip(const OwnerStrip& strip, int i) {
     const D32 d;
+    const V32 zero = hn::Zero(d);
     return {hn::LoadU(d, strip.depth + i), hn::LoadU(d, strip.id + i),
-            hn::LoadU(d, strip.motion + i), hn::LoadU(d, strip.expected + i),
-            hn::LoadU(d, strip.normal + i)};
+            (kPlanes & kWithMotion) != 0 ? hn::LoadU(d, strip.motion + i) : zero,
+            hn::LoadU(d, strip.expected + i),
+            (kPlanes & kWithNormal) != 0 ? hn::LoadU(d, strip.normal + i) : zero};
 }
 
 /// Fills the strip for row y of the tile.
-template <class Which>
+template <class Which, int kPlanes>
 HWY_INLINE void fillStrip(const Job& job, const TileRect& tile, int y, OwnerStrip& strip) {
     const int lanes = int(hn::Lanes(D32()));
     for (int i = kMaxLanes - lanes; i < kMaxLanes + (tile.x1 - tile.x0) + 1; i += lanes) {
         const ptrdiff_t at = y * job.stride + tile.x0 - kMaxLanes + i;
-        Owners best = samplesAt(job.now, at);
+        Owners best = samplesAt<kPlanes>(job.now, at);
         if (y > 0) {
-            Which::take(best, samplesAt(job.now, at - job.stride));
+            Which::take(best, samplesAt<kPlanes>(job.now, at - job.stride));
         }
         if (y + 1 < job.height) {
-            Which::take(best, samplesAt(job.now, at + job.stride));
+            Which::take(best, samplesAt<kPlanes>(job.now, at + job.stride));
         }
-        storeStrip(best, strip, i);
+        storeStrip<kPlanes>(best, strip, i);
     }
     if (tile.x0 == 0) {
         strip.depth[kMaxLanes - 1] = Which::kNever;
@@ -89,12 +107,12 @@ HWY_INLINE void fillStrip(const Job& job, const TileRect& tile, int y, OwnerStri
 }
 
 /// Of the pixels x … x + lanes − 1 of the strip's row.
-template <class Which>
+template <class Which, int kPlanes>
 HWY_INLINE Owners ownersOf(const OwnerStrip& strip, int x_in_tile) {
     const int i = kMaxLanes + x_in_tile;
-    Owners best = loadStrip(strip, i);
-    Which::take(best, loadStrip(strip, i - 1));
-    Which::take(best, loadStrip(strip, i + 1));
+    Owners best = loadStrip<kPlanes>(strip, i);
+    Which::take(best, loadStrip<kPlanes>(strip, i - 1));
+    Which::take(best, loadStrip<kPlanes>(strip, i + 1));
     return best;
 }
 
@@ -181,10 +199,10 @@ HWY_ATTR void recordTile(const Job& job, const TileRect& tile) noexcept {
     const int lanes = int(hn::Lanes(d));
     OwnerStrip strip;
     for (int y = tile.y0; y < tile.y1; ++y) {
-        fillStrip<Nearest>(job, tile, y, strip);
+        fillStrip<Nearest, kWithMotion | kWithNormal>(job, tile, y, strip);
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             const ptrdiff_t at = y * job.stride + x;
-            const Owners seen = ownersOf<Nearest>(strip, x - tile.x0);
+            const Owners seen = ownersOf<Nearest, kWithMotion | kWithNormal>(strip, x - tile.x0);
             const V32 surface = hn::And(seen.id, hn::Set(d, kSurfaceMask));
             const V32 depth = clampedLogDepth(seen.depth);
             Recorded owner{pack(surface, seen.normal), depth, seen.motion};

@@ -30,6 +30,17 @@ constexpr int kApart = 8;
 /// they have slid by more than this since (1/256 pixel, larger axis).
 constexpr int kMaxLag = 64;
 
+/// Frames that are followed where a window shows one surface and next to no contrast: more would
+/// not change the picture.
+constexpr int kFlatFrames = 2;
+constexpr int kFlatShift = 4;
+/// Frames in which the farther of two surfaces is looked for.
+constexpr int kFarFrames = 4;
+/// Contrast that is next to none: what the channels of a window may span.
+constexpr int flatRange(int largest) {
+    return (largest >> kFlatShift) + 4;
+}
+
 /// A still pixel is shown as the mean of its samples from so many samples on.
 constexpr int kSettled = 8;
 

@@ -8,6 +8,7 @@
 #define HWY_TARGET_INCLUDE "postfx/internal/taa_simd.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target must come before highway.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <type_traits>
