@@ -69,7 +69,8 @@ Film::Film(int width, int height, bool with_normals, uint64_t seed)
         box.depth_step = random_.chance(30) ? within(random_, 40) : 0;
         box.normal = uint32_t(random_.below(65536)) << 16 | uint32_t(random_.below(65536));
         box.colour = random_.chance(90) ? random_.below(5000) : random_.below(65536);
-        box.grain = 1 + random_.below(5);
+        // Rough, next to flat, flat.
+        box.grain = 1 + (random_.chance(50) ? random_.below(5) : random_.below(5000));
         boxes_.push_back(box);
     }
 }
