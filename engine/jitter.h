@@ -15,9 +15,10 @@ struct SampleOffset {
 /// Length of the TAA sequence: a centred (0,2)-net in base 2.
 constexpr uint32_t kTaaPeriod = 64;
 
-/// Sample `index` (taken modulo kTaaPeriod) of the TAA sequence; any 2^k aligned run of samples is
-/// itself a (0,2)-net, the offsets of a period have zero mean, and sample 0 is the one nearest the
-/// pixel's centre. The same as jitterSample(JitterPattern::net64, 256, false, index).
+/// Sample `index` (taken modulo kTaaPeriod) of the TAA sequence. A period is a net and has zero
+/// mean; sample 0 is the one nearest the pixel's centre; any 8 samples in a row lie evenly, also on
+/// a surface that glides slowly under them (up to 0.3 pixel per frame), but runs are not nets.
+/// The same as jitterSample(JitterPattern::net64, 256, false, index).
 SampleOffset taaSample(uint32_t index);
 
 /// Samples after which a pattern begins again: the number in its name, 1 for none, 64 for r2 and
@@ -29,8 +30,9 @@ constexpr int kMaxJitterScale_fx8 = 1024;
 /// Sample `index` of a pattern.
 /// `scale_fx8`, 0 … kMaxJitterScale_fx8, multiplies offsets (256 = as they are), rounded half up;
 /// what would leave the pixel stays at its edge. `scramble` takes the samples of each period after
-/// the first in another order (of those in which aligned runs of 2, 4, 8 … stay together). Without
-/// it any `period` consecutive samples are the whole set; with it only those of a period are.
+/// the first in another order, in which aligned runs of 2, 4, 8 … stay together (those of net16 and
+/// net32 are nets). Without it any `period` consecutive samples are the whole set; with it only
+/// those of a period are.
 /// Zero mean over a period: none, uniform2, rgss4, hammersley, net. Halton begins at index 1, its
 /// values are exact and rounded half up. Formulas: jitter.cpp.
 SampleOffset jitterSample(JitterPattern pattern, int scale_fx8, bool scramble, uint32_t index);
