@@ -4,7 +4,10 @@
 #include "engine/frame_loop.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <optional>
 
 #include "engine/jitter.h"
 #include "postfx/laboratory.h"
@@ -77,8 +80,11 @@ struct FrameLoop::State {
     Image<uint8_t> confidence;  ///< for sharpening only
     StageTimes times;
     int resolved_frame = kNoFrame;  ///< the frame that the TAA history ends with
-    int resize_frame = 0;           ///< the first frame of the present size
-    bool resized = false;           ///< resize_frame is the one that is rendered next
+    /// What lies far ahead has moved by this much over the picture since the camera set off, 1/256
+    /// pixel modulo 1 pixel.
+    SampleOffset drift;
+    int resize_frame = 0;  ///< the first frame of the present size
+    bool resized = false;  ///< resize_frame is the one that is rendered next
 
     /// Runs `stage` and adds its time to `total_ms`.
     template <class Stage>
@@ -101,6 +107,7 @@ struct FrameLoop::State {
     uint32_t sampleOf(int frame, uint32_t subframe) const;
     RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
+    void followCamera(const FrameState& frame);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
     void resolve(const FrameState& frame, SampleOffset offset);
     void resolveFrame(int frame);
@@ -175,13 +182,57 @@ static void freeze(FrameState& frame) {
     }
 }
 
+/// To −128 … 127, modulo one pixel.
+static int wrapped(int64_t offset_fx8) {
+    return int((offset_fx8 + 128) & 255) - 128;
+}
+
+/// Where the point infinitely far along (x, y, z) is on the screen, pixels from the centre.
+static std::optional<std::array<double, 2>> farPoint(const glm::dmat4& view_projection, double x,
+                                                     double y, double z, int width, int height) {
+    const auto row = [&](int i) {
+        return view_projection[0][i] * x + view_projection[1][i] * y + view_projection[2][i] * z;
+    };
+    const double w = row(3);
+    if (!(w > 0)) {
+        return std::nullopt;
+    }
+    return std::array{row(0) / w * (0.5 * width), row(1) / w * (-0.5 * height)};
+}
+
+/// The gather finds a surface's old samples where the motion has carried them: the pattern stays
+/// even on the surface only if the samples move along with it. What holds for all surfaces under a
+/// turning camera holds for the far ones under any. A camera at rest has the plain pattern.
+void FrameLoop::State::followCamera(const FrameState& frame) {
+    const glm::dmat4& now = frame.camera.view_projection;
+    const glm::dmat4& before = frame.camera_before.view_projection;
+    if (!gathers() || settings.policy.jitter == JitterPattern::none || frame.cut || now == before) {
+        drift = {};
+        return;
+    }
+    const double x = now[0][3], y = now[1][3], z = now[2][3];  // straight ahead
+    const auto here = farPoint(now, x, y, z, settings.width, settings.height);
+    const auto there = farPoint(before, x, y, z, settings.width, settings.height);
+    if (!here || !there) {
+        return;
+    }
+    const auto moved = [&](size_t axis, int old_fx8) {
+        constexpr double kFarthest = 1e6;  // pixels
+        const double d = std::clamp((*there)[axis] - (*here)[axis], -kFarthest, kFarthest);
+        return wrapped(old_fx8 + int64_t(std::floor(d * 256 + 0.5)));
+    };
+    drift = {moved(0, drift.x_fx8), moved(1, drift.y_fx8)};
+}
+
 /// Where the sample lies: a camera file's word goes before the policy's pattern.
 SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample) const {
     if (frame.jitter_fx8 && settings.subframes == 1) {
         return {(*frame.jitter_fx8)[0], (*frame.jitter_fx8)[1]};
     }
     const TaaPolicy& policy = settings.policy;
-    return jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, sample);
+    const SampleOffset offset =
+        jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, sample);
+    return {wrapped(offset.x_fx8 - drift.x_fx8), wrapped(offset.y_fx8 - drift.y_fx8)};
 }
 
 /// Takes the sample that was just rasterized into the history.
@@ -209,6 +260,7 @@ void FrameLoop::State::resolveFrame(int frame) {
     state.cut |= frame == historyStart(frame);
     for (uint32_t i = 0; i < uint32_t(settings.subframes); ++i) {
         const uint32_t sample = sampleOf(frame, i);
+        followCamera(state);
         const SampleOffset offset = offsetOf(state, sample);
         rasterizeSample(state, offset, sample);
         timed(times.taa_ms, [&] { resolve(state, offset); });

@@ -197,6 +197,7 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     job.sums.count = count.view().data;
     job.shown_count = shown_count.view().data;
     job.change_age = since_change < settings.ring ? change_age.data() : nullptr;
+    job.start_age = started.ages();
     job.sample_cap = settings.sample_cap;
     job.settled = std::min(taa::kSettled, settings.sample_cap);
     job.camera_moved = !gbuffer.tiles.empty() && gbuffer.tiles[0].camera_moved;
@@ -269,6 +270,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     }
     s.noteChanges(frame, shading_changed);
     s.forgetStarted(gbuffer, workers);
+    s.started.countAges(s.first, settings.ring);
     s.cursor = (s.cursor + 1) % settings.ring;
     s.frames = std::min(s.frames + 1, settings.ring);
     s.ring[size_t(s.cursor)].jitter_x_fx8 = frame.jitter_x_fx8;

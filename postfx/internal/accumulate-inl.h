@@ -42,11 +42,12 @@ HWY_ATTR SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillne
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             const ptrdiff_t at = y * job.stride + x;
             const Mask32 pixels = lanesBefore(tile.x1 - x);
-            const Mask32 moved =
-                hn::And(pixels, hn::Ne(load8(disturbed + (x - tile.x0)), hn::Zero(d)));
+            const V32 disturbance = hn::IfThenElseZero(pixels, load8(disturbed + (x - tile.x0)));
+            const Mask32 anew = hn::Ne(disturbance, hn::Zero(d));
+            const Mask32 moved = hn::Eq(disturbance, hn::Set(d, kMoved));
             V32 count = restart ? hn::Zero(d) : load8(job.sums.count + at);
-            result.changed |= !hn::AllFalse(d, hn::And(moved, hn::Ne(count, hn::Zero(d))));
-            count = hn::IfThenZeroElse(moved, count);
+            result.changed |= !hn::AllFalse(d, hn::And(anew, hn::Ne(count, hn::Zero(d))));
+            count = hn::IfThenZeroElse(anew, count);
             const Mask32 below = maskOf(hn::Lt(asSigned(count), hn::Set(di, job.sample_cap)));
             const Mask32 grows = hn::And(hn::AndNot(moved, pixels), below);
             const V32 grown = hn::Add(count, hn::IfThenElseZero(grows, hn::Set(d, 1)));

@@ -18,12 +18,15 @@ struct SumsResult {
 };
 
 /// Adds this frame's samples to the sums and shows the settled ones. `restart`: there are no sums
-/// yet. A pixel that is not still loses its sum.
+/// yet. A pixel where something moved loses its sum; one where shading changed starts anew.
 SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillness stillness,
                                    bool restart) noexcept;
 
-/// Fills flags[x − tile.x0] for the pixels of row y: 1 where the 3×3 window holds a sample of an
-/// object that moved, or of a surface whose shading changed in this frame.
+/// The worst that the 3×3 window of a pixel holds: a surface whose shading changed in this frame,
+/// or an object that moved.
+constexpr uint8_t kChanged = 1;
+constexpr uint8_t kMoved = 2;
+/// Fills flags[x − tile.x0] for the pixels of row y; 0 where nothing happened.
 void disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) noexcept;
 
 }  // namespace still::taa

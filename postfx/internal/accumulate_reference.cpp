@@ -11,9 +11,12 @@
 namespace still::taa {
 namespace {
 
-bool disturbs(const Job& job, uint16_t id) {
-    return (id & kMovedBit) != 0 ||
-           (job.change_age != nullptr && job.change_age[id & kSurfaceMask] == 0);
+uint8_t disturbance(const Job& job, uint16_t id) {
+    if ((id & kMovedBit) != 0) {
+        return kMoved;
+    }
+    const bool changed = job.change_age != nullptr && job.change_age[id & kSurfaceMask] == 0;
+    return changed ? kChanged : 0;
 }
 
 void show(const Job& job, ptrdiff_t at, int count) {
@@ -31,13 +34,14 @@ void disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) n
     for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
         const uint16_t* row = job.now.id + j * job.stride;
         for (int x = std::max(tile.x0 - 1, 0); x < std::min(tile.x1 + 1, job.width); ++x) {
-            if (!disturbs(job, row[x])) {
+            const uint8_t flag = disturbance(job, row[x]);
+            if (flag == 0) {
                 continue;
             }
             const int first = std::max(x - 1 - tile.x0, 0);
             const int last = std::min(x + 1 - tile.x0, width - 1);
             for (int i = first; i <= last; ++i) {
-                flags[i] = 1;
+                flags[i] = std::max(flags[i], flag);
             }
         }
     }
@@ -53,11 +57,11 @@ SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillne
         }
         for (int x = tile.x0; x < tile.x1; ++x) {
             const ptrdiff_t at = y * job.stride + x;
+            const uint8_t disturbance = disturbed[x - tile.x0];
             int count = restart ? 0 : job.sums.count[at];
-            if (disturbed[x - tile.x0] != 0) {
-                result.changed |= count != 0;
-                count = 0;
-            } else if (count < job.sample_cap) {
+            result.changed |= disturbance != 0 && count != 0;
+            count = disturbance != 0 ? 0 : count;
+            if (disturbance != kMoved && count < job.sample_cap) {
                 for (int c = 0; c < 3; ++c) {
                     const Sum past =
                         count == 0 ? Sum{} : Sum{job.sums.mean[c][at], job.sums.rest[c][at]};

@@ -170,7 +170,8 @@ struct WindowLanes {
     LayerLanes owner, far;
     V32 normal;
     VI32 slide;
-    Mask32 moved, layered, apart, flat;
+    VI32 frames;  ///< to follow
+    Mask32 moved, layered, apart;
 };
 
 /// The accepted samples of the group's pixels.
@@ -202,7 +203,7 @@ HWY_INLINE Site siteOf(const Job& job, VI32 px, VI32 py, const SlotIn& slot, Mas
     site.fy = hn::And(asUnsigned(sy), hn::Set(d, 255));
     const auto axis = [&](V32 f) {
         const VI32 scaled = hn::Add(hn::Mul(hn::Sub(asSigned(f), hn::Set(di, 51)), hn::Set(di, 53)),
-                                    hn::Set(di, 256));
+                                    hn::Set(di, 271));
         return asUnsigned(
             hn::Min(hn::Max(hn::ShiftRight<9>(scaled), hn::Zero(di)), hn::Set(di, kAxisWeight)));
     };
@@ -231,11 +232,11 @@ HWY_INLINE VI32 slideOf(V32 a, V32 b) {
                    hn::Abs(hn::Sub(highSigned(a), highSigned(b))));
 }
 
-/// Lanes of a tap that show shading which is no more: staleShading().
-HWY_INLINE Mask32 staleLanes(const Job& job, int k, V32 surface) {
+/// Lanes whose surfaces have ages under k.
+HWY_INLINE Mask32 olderThan(const uint32_t* ages, int k, V32 surface) {
     const D32 d;
     const DI32 di;
-    const V32 age = hn::GatherIndex(d, job.change_age, asSigned(surface));
+    const V32 age = hn::GatherIndex(d, ages, asSigned(surface));
     return maskOf(hn::Lt(asSigned(age), hn::Set(di, k)));
 }
 
@@ -253,37 +254,44 @@ HWY_INLINE PlaceLanes placeOf(const LayerLanes& layer, const Expected& expected,
     return {same, hn::AndNot(same, not_nearer), difference};
 }
 
-/// Samples along the owner's way: collectOwn().
+/// Samples along the owner's way: collectOwn(). kBehind: some lanes have a layer behind that moves
+/// differently.
+template <bool kBehind>
 struct OwnRule {
     const Job& job;
     const WindowLanes& window;
     Normals normal;
     bool any_moved;
 
+    /// leftBehind(): 0x10000 where true.
+    HWY_INLINE V32 leftBehind(int k, const Expected& own, const PlaceLanes& place,
+                              V32 depth) const {
+        const DI32 di;
+        const Expected far = expectedAt(window.far, k);
+        const VI32 lag = hn::Mul(window.slide, hn::Set(di, k));
+        const Mask32 lags = maskOf(hn::Gt(lag, hn::Set(di, kMaxLag)));
+        const VI32 above = hn::ShiftLeft<2>(hn::Sub(asSigned(depth), far.depth));
+        const Mask32 low = maskOf(hn::Lt(above, hn::Sub(own.depth, far.depth)));
+        return hn::IfThenElseZero(hn::And(hn::And(place.farther, lags), low),
+                                  hn::Set(D32(), 0x10000));
+    }
+
     HWY_INLINE void operator()(int k, const SlotIn& slot, const Address& address, V32 way,
                                const Samples& samples, V32 weight[4], V32 behind[4]) const {
         const D32 d;
         const DI32 di;
         const Expected own = expectedAt(window.owner, k);
-        const Expected far = expectedAt(window.far, k);
-        const VI32 lag = hn::Mul(window.slide, hn::Set(di, k));
-        const Mask32 lags = maskOf(hn::Gt(lag, hn::Set(di, kMaxLag)));
-        const VI32 height = hn::Sub(own.depth, far.depth);
         Mask32 hard[4], same[4];
         Mask32 any_hard = hn::MaskFromVec(hn::Zero(d));
         for (int t = 0; t < 4; ++t) {
             const V32 surface = high(samples.blue_surface.of[t]);
             const V32 depth = low(samples.depths.of[t]);
             const PlaceLanes place = placeOf(window.owner, own, surface, depth);
-            const Mask32 weighs = hn::Ne(weight[t], hn::Zero(d));
             const Mask32 easy = hn::Or(place.same, hn::And(place.farther, window.layered));
             same[t] = place.same;
-            hard[t] = hn::AndNot(easy, weighs);
+            hard[t] = hn::AndNot(easy, maskOf(hn::Gt(asSigned(weight[t]), hn::Zero(di))));
             any_hard = hn::Or(any_hard, hard[t]);
-            const VI32 above = hn::ShiftLeft<2>(hn::Sub(asSigned(depth), far.depth));
-            const Mask32 left =
-                hn::And(hn::And(place.farther, lags), maskOf(hn::Lt(above, height)));
-            behind[t] = hn::IfThenElseZero(left, hn::Set(d, 0x10000));
+            behind[t] = kBehind ? leftBehind(k, own, place, depth) : hn::Zero(d);
         }
         if (k == 0) {
             return;
@@ -294,7 +302,11 @@ struct OwnRule {
                 const VI32 slid = hn::Mul(slideOf(motion.of[t], way), hn::Set(di, k));
                 const Mask32 none =
                     maskOf(hn::Eq(lowSigned(motion.of[t]), hn::Set(di, kNoHistory)));
-                const Mask32 far_off = hn::Or(none, maskOf(hn::Gt(slid, hn::Set(di, kMaxSlide))));
+                Mask32 far_off = hn::Or(none, maskOf(hn::Gt(slid, hn::Set(di, kMaxSlide))));
+                if (job.start_age != nullptr) {
+                    const V32 surface = high(samples.blue_surface.of[t]);
+                    far_off = hn::Or(far_off, olderThan(job.start_age, k, surface));
+                }
                 weight[t] = hn::IfThenZeroElse(hn::And(hard[t], far_off), weight[t]);
             }
         }
@@ -373,32 +385,90 @@ HWY_INLINE void prefetchAhead(const SlotIn& slot, ptrdiff_t at) {
     }
 }
 
-/// follow(): the group's pixels x … along `layer`, where `active`.
-template <class Rule>
-HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, Mask32 active,
-                        Mask32 brief, int frames, const Rule& rule, Kept& kept) {
+/// Where a layer was in each frame: places of the pixels' centres, 1/256 pixel.
+struct Way {
+    struct Place {
+        VI32 px, py;
+        V32 motion;  ///< from the frame after to this one
+        V32 alive;   ///< all ones in lanes that are followed so far
+    };
+    Place place[kMaxRing];
+    int frames = 0;
+};
+
+/// The end of a way while it is being found.
+struct Walker {
+    V32 motion, alive;
+    VI32 px, py;
+};
+
+HWY_INLINE Walker startWay(int x, int y, const LayerLanes& layer, Mask32 active) {
+    return {layer.motion, hn::VecFromMask(D32(), active), hn::ShiftLeft<8>(hn::Iota(DI32(), x)),
+            hn::Set(DI32(), y * 256)};
+}
+
+/// follow(), the way alone, one frame on; nothing when no lane is alive.
+HWY_INLINE void stepWay(const Job& job, int k, bool last, const LayerLanes& layer, VI32 limit,
+                        Walker& walker, Way& way) {
     const D32 d;
     const DI32 di;
+    const SlotIn& slot = job.slot[k];
+    Mask32 alive = hn::MaskFromVec(walker.alive);
+    if (k == kFlatFrames || k == kCalmFrames) {
+        alive = hn::And(alive, maskOf(hn::Gt(limit, hn::Set(di, k))));
+    }
+    if (k > 0) {
+        const Mask32 ends = maskOf(hn::Eq(lowSigned(walker.motion), hn::Set(di, kNoHistory)));
+        alive = hn::AndNot(ends, alive);
+        walker.px = hn::Add(walker.px, lowSigned(walker.motion));
+        walker.py = hn::Add(walker.py, highSigned(walker.motion));
+    }
+    walker.alive = hn::VecFromMask(d, alive);
+    if (hn::AllFalse(d, alive)) {
+        return;
+    }
+    way.place[way.frames++] = {walker.px, walker.py, walker.motion, walker.alive};
+    if (last) {
+        return;
+    }
+    const VI32 nx = hn::ShiftRight<8>(hn::Add(walker.px, hn::Set(di, 128 - slot.jitter_x_fx8)));
+    const VI32 ny = hn::ShiftRight<8>(hn::Add(walker.py, hn::Set(di, 128 - slot.jitter_y_fx8)));
+    alive = hn::And(alive, hn::And(within(nx, job.width), within(ny, job.height)));
+    walker.alive = hn::VecFromMask(d, alive);
+    if (k == 0) {
+        return;
+    }
+    const VI32 row = hn::Mul(ny, hn::Set(di, int32_t(job.stride)));
+    const VI32 nearest = choose(alive, hn::Add(row, nx), hn::Zero(di));
+    V32 motion = walker.motion, owner = hn::Zero(d), depths = owner;
+    forClusters(
+        nearest, alive,
+        [&](int32_t offset, Mask32 same) {
+            owner = choose(same, hn::LoadU(d, slot.owner + offset), owner);
+            motion = choose(same, hn::LoadU(d, slot.motion + offset), motion);
+            depths = choose(same, hn::LoadU(d, slot.depths + offset), depths);
+        },
+        [&](Mask32 rest) {
+            owner = choose(rest, hn::GatherIndex(d, slot.owner, nearest), owner);
+            motion = choose(rest, hn::GatherIndex(d, slot.motion, nearest), motion);
+            depths = choose(rest, hn::GatherIndex(d, slot.depths, nearest), depths);
+        });
+    const Expected expected = expectedAt(layer, k);
+    const VI32 difference = hn::Abs(hn::Sub(asSigned(high(depths)), expected.depth));
+    const Mask32 follows =
+        hn::And(hn::Eq(hn::And(owner, hn::Set(d, kSurfaceMask)), layer.surface),
+                maskOf(atMost(difference, hn::Add(expected.tolerance, expected.tolerance))));
+    walker.motion = choose(follows, motion, walker.motion);
+}
+
+/// follow(): the samples along a way.
+template <class Rule>
+HWY_INLINE void collect(const Job& job, int x, const Way& way, const Rule& rule, Kept& kept) {
     kept.clear();
-    V32 motion = layer.motion;
-    VI32 px = hn::ShiftLeft<8>(hn::Iota(di, x));
-    VI32 py = hn::Set(di, y * 256);
-    Mask32 alive = active;
-    for (int k = 0; k < frames; ++k) {
+    for (int k = 0; k < way.frames; ++k) {
         const SlotIn& slot = job.slot[k];
-        if (k == kFlatFrames) {
-            alive = hn::AndNot(brief, alive);
-        }
-        if (k > 0) {
-            const Mask32 ends = maskOf(hn::Eq(lowSigned(motion), hn::Set(di, kNoHistory)));
-            alive = hn::AndNot(ends, alive);
-            px = hn::Add(px, lowSigned(motion));
-            py = hn::Add(py, highSigned(motion));
-        }
-        if (hn::AllFalse(d, alive)) {
-            return;
-        }
-        const Site site = siteOf(job, px, py, slot, alive);
+        const Way::Place& place = way.place[k];
+        const Site site = siteOf(job, place.px, place.py, slot, hn::MaskFromVec(place.alive));
         const Address address = addressOf(job, site);
         if ((x & 15) == 0) {
             prefetchAhead(slot, hn::GetLane(address.lower) + kRowsAhead * job.stride);
@@ -406,47 +476,14 @@ HWY_INLINE void collect(const Job& job, int x, int y, const LayerLanes& layer, M
         const Samples samples = fetchSamples(slot, address);
         V32 weight[4] = {site.weight[0], site.weight[1], site.weight[2], site.weight[3]};
         V32 behind[4];
-        rule(k, slot, address, motion, samples, weight, behind);
+        rule(k, slot, address, place.motion, samples, weight, behind);
         if (k > 0 && job.change_age != nullptr) {
             for (int t = 0; t < 4; ++t) {
-                weight[t] = hn::IfThenZeroElse(staleLanes(job, k, high(samples.blue_surface.of[t])),
-                                               weight[t]);
+                weight[t] = hn::IfThenZeroElse(
+                    olderThan(job.change_age, k, high(samples.blue_surface.of[t])), weight[t]);
             }
         }
         keep(site, samples, weight, behind, k > 0, kept);
-        if (k + 1 == frames) {
-            return;
-        }
-        const Mask32 right = maskOf(atLeast(asSigned(site.fx), hn::Set(di, 128)));
-        const Mask32 lower = maskOf(atLeast(asSigned(site.fy), hn::Set(di, 128)));
-        const VI32 nx = hn::Add(site.ix, hn::IfThenElseZero(signedMask(right), hn::Set(di, 1)));
-        const VI32 ny = hn::Add(site.iy, hn::IfThenElseZero(signedMask(lower), hn::Set(di, 1)));
-        alive = hn::And(alive, hn::And(within(nx, job.width), within(ny, job.height)));
-        if (k == 0) {
-            continue;
-        }
-        const VI32 nearest =
-            choose(alive, hn::Add(hn::Mul(ny, hn::Set(di, int32_t(job.stride))), nx), hn::Zero(di));
-        V32 next_motion = motion, owner = hn::Zero(d);
-        forClusters(
-            nearest, alive,
-            [&](int32_t offset, Mask32 same) {
-                owner = choose(same, hn::LoadU(d, slot.owner + offset), owner);
-                next_motion = choose(same, hn::LoadU(d, slot.motion + offset), next_motion);
-            },
-            [&](Mask32 rest) {
-                owner = choose(rest, hn::GatherIndex(d, slot.owner, nearest), owner);
-                next_motion = choose(rest, hn::GatherIndex(d, slot.motion, nearest), next_motion);
-            });
-        const V32 top = choose(right, samples.depths.of[1], samples.depths.of[0]);
-        const V32 bottom = choose(right, samples.depths.of[3], samples.depths.of[2]);
-        const V32 depth = high(choose(lower, bottom, top));
-        const Expected expected = expectedAt(layer, k);
-        const VI32 difference = hn::Abs(hn::Sub(asSigned(depth), expected.depth));
-        const Mask32 follows =
-            hn::And(hn::Eq(hn::And(owner, hn::Set(d, kSurfaceMask)), layer.surface),
-                    maskOf(atMost(difference, hn::Add(expected.tolerance, expected.tolerance))));
-        motion = choose(follows, next_motion, motion);
     }
 }
 
@@ -540,7 +577,7 @@ HWY_INLINE Mask32 fitLanes(const Kept& kept, const Colour* behind, Mask32 separa
 
 /// lookAround() for the pixels at `at`, whose owners stand in this frame's record.
 HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen, const Owners& far,
-                                Mask32 calm, Mask32 pixels) {
+                                VI32 calm_frames, Mask32 pixels) {
     const D32 d;
     const DI32 di;
     const V32 surface_mask = hn::Set(d, kSurfaceMask);
@@ -568,7 +605,7 @@ HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen
     w.far.motion = far.motion;
     const VI32 height = hn::Sub(w.owner.depth, w.far.depth);
     w.layered = maskOf(hn::Gt(height, hn::Add(tolerance, hn::Add(sloped, sloped))));
-    w.flat = hn::AndNot(hn::Or(w.layered, inferred), calm);
+    w.frames = choose(hn::Or(w.layered, inferred), hn::Set(di, kMaxRing), calm_frames);
     w.slide = slideOf(w.owner.motion, w.far.motion);
     const VI32 none = hn::Set(di, kNoHistory);
     const Mask32 known = hn::Not(maskOf(
@@ -604,12 +641,21 @@ HWY_INLINE void mixSpatialLanes(const Job& job, int x, int y, VI32 old_weight, M
     }
 }
 
-HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Owners& seen, const Owners& far,
-                            Mask32 calm, Mask32 pixels) {
+/// A group of pixels of a row.
+struct Group {
+    WindowLanes window;
+    Walker walker;
+    Way way;     ///< of the window's owner
+    V32 pixels;  ///< all ones in the lanes that are asked for
+    bool wanted;
+};
+
+HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Group& group) {
     const D32 d;
     const DI32 di;
     const ptrdiff_t at = y * job.stride + x;
-    const WindowLanes window = windowOf(job, at, seen, far, calm, pixels);
+    const WindowLanes& window = group.window;
+    const Mask32 pixels = hn::MaskFromVec(group.pixels);
     Colour colour;
     for (int c = 0; c < 3; ++c) {
         colour.of[c] = load16(job.now.colour[c] + at);
@@ -619,15 +665,29 @@ HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Owners& seen, co
     Mask32 separate = hn::MaskFromVec(hn::Zero(d));
     const bool any_apart = !hn::AllFalse(d, window.apart);
     if (any_apart) {
-        collect(job, x, y, window.far, window.apart, separate, std::min(kFarFrames, job.frames),
-                FarRule{job, window}, kept);
+        Walker walker = startWay(x, y, window.far, window.apart);
+        const int frames = std::min(kFarFrames, job.frames);
+        Way way;
+        for (int k = 0; k < frames; ++k) {
+            stepWay(job, k, k + 1 == frames, window.far, hn::Set(di, kMaxRing), walker, way);
+        }
+        collect(job, x, way, FarRule{job, window}, kept);
         separate = hn::And(fitLanes(kept, nullptr, separate, behind), window.apart);
     }
     const bool any_moved = !hn::AllFalse(d, window.moved);
-    const OwnRule rule{job, window, decodeNormals(window.normal), any_moved};
-    collect(job, x, y, window.owner, pixels, window.flat, job.frames, rule, kept);
+    const auto collectOwn = [&](auto behind_tag) {
+        const OwnRule<decltype(behind_tag)::value> rule{job, window, decodeNormals(window.normal),
+                                                        any_moved};
+        collect(job, x, group.way, rule, kept);
+    };
+    if (any_apart) {
+        collectOwn(std::true_type());
+    } else {
+        collectOwn(std::false_type());
+    }
     fitLanes(kept, any_apart ? &behind : nullptr, separate, colour);
-    const Mask32 lone = hn::And(hn::AndNot(window.flat, pixels),
+    const Mask32 flat = maskOf(hn::Eq(window.frames, hn::Set(di, kFlatFrames)));
+    const Mask32 lone = hn::And(hn::AndNot(flat, pixels),
                                 maskOf(hn::Lt(kept.old_weight, hn::Set(di, kFrameWeight))));
     if (!hn::AllFalse(d, lone)) {
         mixSpatialLanes(job, x, y, kept.old_weight, lone, colour);
@@ -669,42 +729,65 @@ HWY_INLINE void fillContrast(const Job& job, const TileRect& tile, int y, Contra
     }
 }
 
-/// lowContrast()
-HWY_INLINE Mask32 calmLanes(const ContrastStrip& strip, int x_in_tile) {
+/// Frames to follow by the window's contrast alone: see lookAround().
+HWY_INLINE VI32 calmFrames(const ContrastStrip& strip, int x_in_tile) {
     const DI32 di;
     const int i = kMaxLanes + x_in_tile;
-    Mask32 calm = hn::Not(hn::MaskFromVec(hn::Zero(D32())));
+    Mask32 flat = hn::Not(hn::MaskFromVec(hn::Zero(D32())));
+    Mask32 calm = flat;
     for (int c = 0; c < 3; ++c) {
         const uint16_t* l = strip.low[c] + i;
         const uint16_t* h = strip.high[c] + i;
         const V32 low = hn::Min(hn::Min(load16(l - 1), load16(l)), load16(l + 1));
         const VI32 high = asSigned(hn::Max(hn::Max(load16(h - 1), load16(h)), load16(h + 1)));
-        const VI32 bound = hn::Add(hn::ShiftRight<kFlatShift>(high), hn::Set(di, 4));
-        calm = hn::And(calm, maskOf(atMost(hn::Sub(high, asSigned(low)), bound)));
+        const VI32 span = hn::Sub(hn::Sub(high, asSigned(low)), hn::Set(di, 4));
+        flat = hn::And(flat, maskOf(atMost(span, hn::ShiftRight<kFlatShift>(high))));
+        calm = hn::And(calm, maskOf(atMost(span, hn::ShiftRight<kCalmShift>(high))));
     }
-    return calm;
+    return choose(flat, hn::Set(di, kFlatFrames),
+                  choose(calm, hn::Set(di, kCalmFrames), hn::Set(di, kMaxRing)));
 }
 
 HWY_ATTR void gatherTile(const Job& job, const TileRect& tile, bool sums_valid) noexcept {
     const D32 d;
     const DI32 di;
-    const int lanes = int(hn::Lanes(d));
+    constexpr int kLanes = int(hn::MaxLanes(d));
     OwnerStrip near_strip, far_strip;
     ContrastStrip contrast;
+    Group groups[kTileSize / kLanes];
+    const int count = (tile.x1 - tile.x0 + kLanes - 1) / kLanes;
     for (int y = tile.y0; y < tile.y1; ++y) {
         fillStrip<Nearest, kIdDepth>(job, tile, y, near_strip);
         fillStrip<Farthest, kWithMotion>(job, tile, y, far_strip);
         fillContrast(job, tile, y, contrast);
-        for (int x = tile.x0; x < tile.x1; x += lanes) {
+        for (int i = 0; i < count; ++i) {
+            const int x = tile.x0 + i * kLanes;
+            const ptrdiff_t at = y * job.stride + x;
+            Group& group = groups[i];
             Mask32 pixels = lanesBefore(tile.x1 - x);
             if (sums_valid) {
-                const V32 count = load8(job.sums.count + y * job.stride + x);
-                pixels = hn::And(pixels, maskOf(hn::Lt(asSigned(count), hn::Set(di, job.settled))));
+                const VI32 samples = asSigned(load8(job.sums.count + at));
+                pixels = hn::And(pixels, maskOf(hn::Lt(samples, hn::Set(di, job.settled))));
             }
-            if (!hn::AllFalse(d, pixels)) {
-                gatherGroup(job, x, y, ownersOf<Nearest, kIdDepth>(near_strip, x - tile.x0),
-                            ownersOf<Farthest, kWithMotion>(far_strip, x - tile.x0),
-                            calmLanes(contrast, x - tile.x0), pixels);
+            group.wanted = !hn::AllFalse(d, pixels);
+            group.pixels = hn::VecFromMask(d, pixels);
+            group.window = windowOf(job, at, ownersOf<Nearest, kIdDepth>(near_strip, i * kLanes),
+                                    ownersOf<Farthest, kWithMotion>(far_strip, i * kLanes),
+                                    calmFrames(contrast, i * kLanes), pixels);
+            group.walker = startWay(x, y, group.window.owner, pixels);
+            group.way.frames = 0;
+        }
+        // Each step of a way waits for the one before: all groups of the row wait at once.
+        for (int k = 0; k < job.frames; ++k) {
+            for (int i = 0; i < count; ++i) {
+                Group& group = groups[i];
+                stepWay(job, k, k + 1 == job.frames, group.window.owner, group.window.frames,
+                        group.walker, group.way);
+            }
+        }
+        for (int i = 0; i < count; ++i) {
+            if (groups[i].wanted) {
+                gatherGroup(job, tile.x0 + i * kLanes, y, groups[i]);
             }
         }
     }

@@ -43,10 +43,10 @@ struct Window {
     Layer owner, far;
     uint32_t normal = 0;
     bool moved = false;
-    bool layered = false;  ///< two surfaces, one behind the other
-    bool apart = false;    ///< … that move differently …
-    bool flat = false;     ///< one surface, next to no contrast
-    int slide = 0;         ///< … by this much per frame (1/256 pixel, larger axis)
+    bool layered = false;   ///< two surfaces, one behind the other
+    bool apart = false;     ///< … that move differently …
+    int frames = kMaxRing;  ///< to follow: fewer where there is one surface with little contrast
+    int slide = 0;          ///< … by this much per frame (1/256 pixel, larger axis)
 };
 
 /// One sample near the pixel's centre.
@@ -88,8 +88,9 @@ int slideOf(Motion a, Motion b) {
     return std::max(std::abs(a.x_fx8 - b.x_fx8), std::abs(a.y_fx8 - b.y_fx8));
 }
 
-bool lowContrast(const Job& job, int x, int y) {
-    bool flat = true;
+/// Every channel of the window spans at most contrastBound().
+bool lowContrast(const Job& job, int x, int y, int shift) {
+    bool low_contrast = true;
     for (const uint16_t* plane : job.now.colour) {
         int low = 65535, high = 0;
         for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
@@ -98,9 +99,9 @@ bool lowContrast(const Job& job, int x, int y) {
                 high = std::max<int>(high, plane[j * job.stride + i]);
             }
         }
-        flat &= high - low <= flatRange(high);
+        low_contrast &= high - low <= contrastBound(high, shift);
     }
-    return flat;
+    return low_contrast;
 }
 
 Window lookAround(const Job& job, int x, int y) {
@@ -114,7 +115,11 @@ Window lookAround(const Job& job, int x, int y) {
                          job.now.depth_before[far], job.now.motion[far], 0);
     window.layered =
         window.owner.depth - window.far.depth > kDepthTolerance + 2 * kSlopeFactor * seen.slope;
-    window.flat = !window.layered && !seen.inferred && lowContrast(job, x, y);
+    if (!window.layered && !seen.inferred) {
+        window.frames = lowContrast(job, x, y, kFlatShift)   ? kFlatFrames
+                        : lowContrast(job, x, y, kCalmShift) ? kCalmFrames
+                                                             : kMaxRing;
+    }
     window.slide = slideOf(seen.motion, window.far.motion);
     window.apart = window.layered && seen.motion.x_fx8 != kNoHistory &&
                    window.far.motion.x_fx8 != kNoHistory && window.slide > kApart;
@@ -210,16 +215,17 @@ bool leftBehind(const Window& window, int k, int depth) {
 
 /// Samples along the owner's way: its own, and what was seen beside it.
 void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps) {
-    const int frames = window.flat ? std::min(kFlatFrames, job.frames) : job.frames;
-    follow(job, x, y, window.owner, frames,
+    follow(job, x, y, window.owner, std::min(window.frames, job.frames),
            [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion motion) {
                const int surface = highHalf(slot.blue_surface[at]);
                const int depth = lowHalf(slot.depths[at]);
                const Place place = placeOf(window.owner, k, surface, depth);
                if (place != Place::same && !(place == Place::farther && window.layered)) {
                    const Motion other = unpackMotion(slot.motion[at]);
-                   if (k > 0 &&
-                       (other.x_fx8 == kNoHistory || slideOf(other, motion) * k > kMaxSlide)) {
+                   const bool left =
+                       job.start_age != nullptr && uint32_t(k) > job.start_age[surface];
+                   if (k > 0 && (left || other.x_fx8 == kNoHistory ||
+                                 slideOf(other, motion) * k > kMaxSlide)) {
                        return;
                    }
                }
@@ -298,7 +304,7 @@ void gatherPixel(const Job& job, int x, int y) noexcept {
             rgb[c] = job.now.colour[c][at];
         }
     }
-    if (taps.old_weight < kFrameWeight && !window.flat) {
+    if (taps.old_weight < kFrameWeight && window.frames != kFlatFrames) {
         mixSpatial(job, x, y, taps.old_weight, rgb);
     }
     for (int c = 0; c < 3; ++c) {

@@ -178,6 +178,11 @@ HWY_INLINE void inferOwners(const Job& job, int x, int y, Mask32 pixels, const O
     const V32 seen_surface = hn::And(seen.id, surface_mask);
     found = hn::And(found, hn::Eq(hn::And(low_owner, hn::Set(d, kInferredBit)), hn::Zero(d)));
     found = hn::AndNot(hn::Eq(low_owner, seen_surface), found);
+    if (job.start_age != nullptr) {
+        const VI32 surface = asSigned(hn::And(low_owner, surface_mask));
+        const V32 age = hn::GatherIndex(d, job.start_age, surface);
+        found = hn::AndNot(hn::Eq(age, hn::Zero(d)), found);
+    }
     found = hn::AndNot(maskOf(hn::Eq(lowSigned(motion), none)), found);
     VI32 from;
     found = hn::And(found, indexAfter(job, x, y, motion, from));

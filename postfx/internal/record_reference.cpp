@@ -69,6 +69,9 @@ Owner inferOwner(const Job& job, int x, int y, const Owner& seen) noexcept {
         depth <= seen.expected + kDepthTolerance + kSlopeFactor * seen.slope) {
         return seen;
     }
+    if (job.start_age != nullptr && job.start_age[surface] == 0) {
+        return seen;
+    }
     ptrdiff_t from = 0;
     if (!at(motion, from)) {
         return seen;

@@ -59,6 +59,8 @@ struct Job {
     /// Frames since a surface's shading changed, by surface number, 255 = long ago; null when none
     /// changed within the ring.
     const uint32_t* change_age = nullptr;
+    /// The same since a surface began to move: what was seen of it before is no longer there.
+    const uint32_t* start_age = nullptr;
     int sample_cap = 64;
     int settled = 8;  ///< min(kSettled, sample_cap)
     bool camera_moved = false;

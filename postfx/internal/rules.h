@@ -30,19 +30,21 @@ constexpr int kApart = 8;
 /// they have slid by more than this since (1/256 pixel, larger axis).
 constexpr int kMaxLag = 64;
 
-/// Frames that are followed where a window shows one surface and next to no contrast: more would
-/// not change the picture.
+/// Frames that are followed where a window shows one surface with little contrast, and with next to
+/// none: more would hardly change the picture.
+constexpr int kCalmFrames = 4;
 constexpr int kFlatFrames = 2;
+/// What the channels of such windows may span.
+constexpr int kCalmShift = 2;
 constexpr int kFlatShift = 4;
-/// Frames in which the farther of two surfaces is looked for.
-constexpr int kFarFrames = 4;
-/// Contrast that is next to none: what the channels of a window may span.
-constexpr int flatRange(int largest) {
-    return (largest >> kFlatShift) + 4;
+constexpr int contrastBound(int largest, int shift) {
+    return (largest >> shift) + 4;
 }
 
+/// Frames in which the farther of two surfaces is looked for.
+constexpr int kFarFrames = 4;
 /// A still pixel is shown as the mean of its samples from so many samples on.
-constexpr int kSettled = 8;
+constexpr int kSettled = 16;
 
 /// Samples of a moved surface whose normals differ by more than about 10° (cosine² < 31/32) were
 /// lit differently.
@@ -87,7 +89,7 @@ constexpr Sum addSample(Sum sum, int count, int sample) {
 /// that lies f/256 between them: a box of one pixel, its sides softened to ramps over 0.2 … 0.8.
 constexpr int kAxisWeight = 16;
 constexpr int axisWeight(int f) {
-    return std::clamp(((f - 51) * 53 + 256) >> 9, 0, kAxisWeight);
+    return std::clamp(((f - 51) * 53 + 271) >> 9, 0, kAxisWeight);
 }
 /// What a frame's four samples around a pixel weigh together.
 constexpr int kFrameWeight = kAxisWeight * kAxisWeight;

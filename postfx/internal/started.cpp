@@ -6,6 +6,8 @@
 namespace still::taa {
 namespace {
 
+constexpr uint32_t kLongAgo = 255;
+
 /// Sets the bits of all moved surfaces in the tile. Ors commute: the order of tiles is no matter.
 void collectMoved(const GBuffer& gbuffer, int tile, uint64_t* bits) {
     const int x0 = tile % gbuffer.tiles_x * kTileSize, y0 = tile / gbuffer.tiles_x * kTileSize;
@@ -42,6 +44,26 @@ void StartedSurfaces::note(const GBuffer& gbuffer, bool first, Workers& workers)
     for (size_t i = 0; i < started_.size(); ++i) {
         started_[i] = first ? 0 : now_[i] & ~before_[i];
         any_ |= started_[i] != 0;
+    }
+    const bool camera = !gbuffer.tiles.empty() && gbuffer.tiles[0].camera_moved;
+    camera_started_ = camera && !camera_ && !first;
+    camera_ = camera;
+}
+
+void StartedSurfaces::countAges(bool first, int ring) {
+    const bool now = any_ || camera_started_;
+    since_ = first ? ring : (now ? 0 : std::min(since_ + 1, ring));
+    ring_ = ring;
+    if (since_ >= ring) {
+        ages_.clear();
+        return;
+    }
+    if (ages_.empty()) {
+        ages_.assign(started_.size() * 64, kLongAgo);
+    }
+    for (size_t surface = 0; surface < ages_.size(); ++surface) {
+        const bool starts = camera_started_ || contains(int(surface));
+        ages_[surface] = starts ? 0 : std::min(ages_[surface] + 1, kLongAgo);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "postfx/internal/ring.h"
 #include "rasterizer/gbuffer.h"
@@ -14,8 +15,13 @@ namespace still::taa {
 /// Surfaces that are seen moving now and were not in the frame before.
 class StartedSurfaces {
   public:
-    /// Once per frame, in order. After `first` nothing has started.
+    /// Once per frame, in order. After `first` nothing has started. When the camera starts, so does
+    /// everything.
     void note(const GBuffer& gbuffer, bool first, Workers& workers);
+    /// Once per frame that is kept, after note(). `ring`: frames after which starts are forgotten.
+    void countAges(bool first, int ring);
+    /// Kept frames since each surface started, 255 at most; null when that was long ago for all.
+    const uint32_t* ages() const { return since_ < ring_ ? ages_.data() : nullptr; }
 
     bool any() const { return any_; }
     bool contains(int surface) const {
@@ -26,6 +32,9 @@ class StartedSurfaces {
     using Bits = std::array<uint64_t, (size_t(kSurfaceMask) + 1) / 64>;
     Bits now_{}, before_{}, started_{};
     bool any_ = false;
+    bool camera_ = false, camera_started_ = false;
+    std::vector<uint32_t> ages_;
+    int since_ = 0, ring_ = 0;
 };
 
 /// Takes their sums from the tile's pixels whose 3×3 window showed a started surface in the last

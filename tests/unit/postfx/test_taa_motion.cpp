@@ -207,7 +207,7 @@ TEST_CASE("taa: nothing of a near thing stays on a far one that a moving camera 
     }
 }
 
-TEST_CASE("taa: a square that starts to move leaves no ghost", "[postfx][unit][!mayfail]") {
+TEST_CASE("taa: a square that starts to move leaves no ghost", "[postfx][unit]") {
     for (const Point speed : {Point{1, 0}, Point{2.3, 1.1}, Point{7.5, -3}, Point{0.3, 0.2}}) {
         const auto pose = [=](int f) {
             const int moves = std::max(f - 9, 0);
@@ -229,7 +229,7 @@ TEST_CASE("taa: a square that starts to move leaves no ghost", "[postfx][unit][!
     }
 }
 
-TEST_CASE("taa: a camera that starts to move drags nothing along", "[postfx][unit][!mayfail]") {
+TEST_CASE("taa: a camera that starts to move drags nothing along", "[postfx][unit]") {
     const auto pose = [](int f) { return Pose{{40 + 3.0 * std::max(f - 12, 0), 38}}; };
     World world{140, 80, false, {backdrop(), square(11, pose)}};
     world.layers[0].pose = [=](int f) { return Pose{{0.5 * std::max(f - 12, 0), 0}}; };
