@@ -175,6 +175,7 @@ static void freeze(FrameState& frame) {
     frame.cut = false;
     frame.lighting_changed = false;
     frame.changed_surfaces.clear();
+    frame.turning_surfaces.clear();
     frame.camera_before = frame.camera;
     for (Instance& instance : frame.instances) {
         instance.transform_before = instance.transform;
@@ -246,6 +247,7 @@ void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
     const TaaFrame evidence{.reset = frame.cut,
                             .shading_changed = frame.lighting_changed,
                             .changed_surfaces = frame.changed_surfaces,
+                            .turning_surfaces = frame.turning_surfaces,
                             .jitter_x_fx8 = offset.x_fx8,
                             .jitter_y_fx8 = offset.y_fx8};
     const TaaSettings taa_settings{

@@ -209,6 +209,35 @@ std::vector<uint64_t> changedSurfaces(const Scene& scene, int frame) {
     return surfaces;
 }
 
+/// True when more than the place of the instance changes.
+bool turns(const Instance& instance) {
+    const Affine& now = instance.transform;
+    const Affine& before = instance.transform_before;
+    bool same = true;
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            same &= now[4 * row + column] == before[4 * row + column];
+        }
+    }
+    return !same;
+}
+
+/// See FrameState::turning_surfaces.
+std::vector<uint64_t> turningSurfaces(const Scene& scene, const std::vector<Instance>& instances) {
+    std::vector<uint64_t> surfaces;
+    for (const Instance& instance : instances) {
+        if (!instance.moved || !turns(instance)) {
+            continue;
+        }
+        surfaces.resize(surfaceCount(scene) / 64 + 1, 0);
+        for (size_t part = 0; part < scene.meshes[instance.mesh].parts.size(); ++part) {
+            const size_t surface = instance.first_surface + part;
+            surfaces[surface / 64] |= uint64_t{1} << (surface % 64);
+        }
+    }
+    return surfaces;
+}
+
 bool materialVaries(const Scene& scene, const MaterialTracks& tracks) {
     const Material first = materialAt(scene, tracks, 0);
     return varies(tracks.offset) ||
@@ -253,6 +282,7 @@ FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int fram
     FrameState state;
     state.cut = lastCut(scene, frame) == frame;
     state.instances = instancesAt(scene, frame, state.cut);
+    state.turning_surfaces = turningSurfaces(scene, state.instances);
     state.lighting = lightingAt(scene.lights, frame);
     state.camera = cameraAt(scene, choice, frame, aspect);
     state.camera_before = state.cut ? state.camera : cameraAt(scene, choice, frame - 1, aspect);

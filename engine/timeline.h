@@ -29,6 +29,8 @@ struct FrameState {
     /// Bit s % 64 of word s / 64 is set for each surface s whose material differs from that of the
     /// frame before, up to the last surface. Empty: no material differs, or a cut.
     std::vector<uint64_t> changed_surfaces;
+    /// The same form: surfaces of objects that turn or change their scale. Empty: none does.
+    std::vector<uint64_t> turning_surfaces;
     std::optional<std::array<int, 2>> jitter_fx8;  ///< given by a camera file
 };
 

@@ -23,24 +23,22 @@ using taa::Stillness;
 using taa::TileRect;
 
 struct SlotPlanes {
-    Image<uint32_t> red_green, blue_surface, depths, motion, owner;
+    Image<uint32_t> red_green, blue_id, depths, motion, owner;
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
 
     void resize(int width, int height) {
-        for (Image<uint32_t>* plane : {&red_green, &blue_surface, &depths, &motion, &owner}) {
+        for (Image<uint32_t>* plane : {&red_green, &blue_id, &depths, &motion, &owner}) {
             plane->resize(width, height);
         }
     }
     SlotOut pointers() {
-        return {red_green.view().data, blue_surface.view().data, depths.view().data,
-                motion.view().data,    owner.view().data,        jitter_x_fx8,
-                jitter_y_fx8};
+        return {red_green.view().data, blue_id.view().data, depths.view().data, motion.view().data,
+                owner.view().data,     jitter_x_fx8,        jitter_y_fx8};
     }
 };
 
 taa::SlotIn readOnly(const SlotOut& p) {
-    return {p.red_green, p.blue_surface, p.depths,      p.motion,
-            p.owner,     p.jitter_x_fx8, p.jitter_y_fx8};
+    return {p.red_green, p.blue_id, p.depths, p.motion, p.owner, p.jitter_x_fx8, p.jitter_y_fx8};
 }
 
 /// What is remembered of a tile between frames.
@@ -51,10 +49,12 @@ struct TileMemory {
     bool changed = true;    ///< the last frame changed the picture
 };
 
+bool anyOf(std::span<const uint64_t> surfaces) {
+    return std::any_of(surfaces.begin(), surfaces.end(), [](uint64_t word) { return word != 0; });
+}
+
 bool changesShading(const TaaFrame& frame) {
-    return frame.shading_changed ||
-           std::any_of(frame.changed_surfaces.begin(), frame.changed_surfaces.end(),
-                       [](uint64_t word) { return word != 0; });
+    return frame.shading_changed || anyOf(frame.changed_surfaces);
 }
 
 constexpr size_t kSurfaces = size_t(kSurfaceMask) + 1;
@@ -74,6 +74,7 @@ struct Taa::State {
     int sample_cap = 0;
     std::vector<TileMemory> tiles;
     std::vector<uint32_t> change_age;  ///< empty until something changes
+    std::vector<uint32_t> turning;     ///< Job::turning; empty: null
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
     bool first = true;  ///< this frame has no past
@@ -88,6 +89,7 @@ struct Taa::State {
     void noteChanges(const TaaFrame& frame, bool now);
     bool disturbed(const GBuffer& gbuffer, int tile) const;
     bool nothingToDo(const GBuffer& gbuffer, bool shading_changed, int cap) const;
+    void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
                    Workers& workers);
@@ -170,6 +172,17 @@ bool Taa::State::nothingToDo(const GBuffer& gbuffer, bool shading_changed, int c
                        [](const TileFacts& facts) { return facts.still(); });
 }
 
+void Taa::State::noteTurning(std::span<const uint64_t> surfaces) {
+    turning.clear();
+    if (!anyOf(surfaces)) {
+        return;
+    }
+    turning.resize(kSurfaces);
+    for (size_t i = 0; i < std::min(surfaces.size() * 64, kSurfaces); ++i) {
+        turning[i] = uint32_t((surfaces[i / 64] >> (i % 64)) & 1);
+    }
+}
+
 Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     Job job;
     job.width = width;
@@ -198,6 +211,7 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     job.shown_count = shown_count.view().data;
     job.change_age = since_change < settings.ring ? change_age.data() : nullptr;
     job.start_age = started.ages();
+    job.turning = turning.empty() ? nullptr : turning.data();
     job.sample_cap = settings.sample_cap;
     job.settled = std::min(taa::kSettled, settings.sample_cap);
     job.camera_moved = !gbuffer.tiles.empty() && gbuffer.tiles[0].camera_moved;
@@ -209,7 +223,7 @@ void Taa::State::forgetStarted(const GBuffer& gbuffer, Workers& workers) {
     if (!started.any()) {
         return;
     }
-    const Image<uint32_t>& last = ring[size_t(cursor)].blue_surface;
+    const Image<uint32_t>& last = ring[size_t(cursor)].blue_id;
     workers.parallelFor(int(tiles.size()), 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
             if (tiles[size_t(tile)].summed && disturbed(gbuffer, tile)) {
@@ -269,6 +283,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
         return;
     }
     s.noteChanges(frame, shading_changed);
+    s.noteTurning(frame.turning_surfaces);
     s.forgetStarted(gbuffer, workers);
     s.started.countAges(s.first, settings.ring);
     s.cursor = (s.cursor + 1) % settings.ring;

@@ -28,6 +28,8 @@ struct TaaFrame {
     bool shading_changed = false;
     /// The same for single surfaces: one bit per surface number; empty = none.
     std::span<const uint64_t> changed_surfaces{};
+    /// Surfaces of objects that turn or bend, in the same form.
+    std::span<const uint64_t> turning_surfaces{};
     /// Where this frame's samples lie, from the pixels' centres, −128 … 127.
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
 };

@@ -91,7 +91,7 @@ HWY_INLINE void fetchRow(const uint32_t* plane, VI32 index, Mask32 lanes, V32& l
 
 /// Three planes at once: the clusters are the same.
 struct Samples {
-    Four red_green, blue_surface, depths;
+    Four red_green, blue_id, depths;
 };
 
 HWY_INLINE Four loadFour(const uint32_t* plane, ptrdiff_t upper, ptrdiff_t lower) {
@@ -115,7 +115,7 @@ HWY_INLINE Samples fetchSamples(const SlotIn& slot, const Address& address) {
     const VI32 lane = hn::Iota(di, 0);
     const VI32 upper = hn::Sub(address.upper, lane), lower = hn::Sub(address.lower, lane);
     const ptrdiff_t upper0 = hn::GetLane(upper), lower0 = hn::GetLane(lower);
-    Samples s{loadFour(slot.red_green, upper0, lower0), loadFour(slot.blue_surface, upper0, lower0),
+    Samples s{loadFour(slot.red_green, upper0, lower0), loadFour(slot.blue_id, upper0, lower0),
               loadFour(slot.depths, upper0, lower0)};
     const auto differ = [&](ptrdiff_t u, ptrdiff_t l) {
         const VI32 other = hn::Or(hn::Xor(upper, hn::Set(di, int32_t(u))),
@@ -135,7 +135,7 @@ HWY_INLINE Samples fetchSamples(const SlotIn& slot, const Address& address) {
         const Mask32 others = hn::And(left, differ(u, l));
         const Mask32 same = hn::AndNot(others, left);
         takeFour(same, slot.red_green, u, l, s.red_green);
-        takeFour(same, slot.blue_surface, u, l, s.blue_surface);
+        takeFour(same, slot.blue_id, u, l, s.blue_id);
         takeFour(same, slot.depths, u, l, s.depths);
         left = others;
     }
@@ -148,6 +148,10 @@ HWY_INLINE Four fetchFour(const uint32_t* plane, const Address& address) {
     fetchRow(plane, address.upper, address.lanes, four.of[0], four.of[1]);
     fetchRow(plane, address.lower, address.lanes, four.of[2], four.of[3]);
     return four;
+}
+
+HWY_INLINE V32 surfaceOf(V32 blue_id) {
+    return hn::And(high(blue_id), hn::Set(D32(), kSurfaceMask));
 }
 
 /// A surface on its way back through the frames.
@@ -284,12 +288,21 @@ struct OwnRule {
         Mask32 hard[4], same[4];
         Mask32 any_hard = hn::MaskFromVec(hn::Zero(d));
         for (int t = 0; t < 4; ++t) {
-            const V32 surface = high(samples.blue_surface.of[t]);
+            const V32 surface = surfaceOf(samples.blue_id.of[t]);
             const V32 depth = low(samples.depths.of[t]);
             const PlaceLanes place = placeOf(window.owner, own, surface, depth);
             const Mask32 easy = hn::Or(place.same, hn::And(place.farther, window.layered));
             same[t] = place.same;
-            hard[t] = hn::AndNot(easy, maskOf(hn::Gt(asSigned(weight[t]), hn::Zero(di))));
+            const Mask32 moved =
+                hn::Ne(hn::And(samples.blue_id.of[t], hn::Set(d, kMovedBit << 16)), hn::Zero(d));
+            if (k > 0) {
+                const Mask32 passed =
+                    hn::AndNot(hn::Or(window.moved, hn::Eq(surface, window.far.surface)),
+                               hn::And(place.farther, moved));
+                weight[t] = hn::IfThenZeroElse(passed, weight[t]);
+            }
+            const Mask32 plain = hn::AndNot(hn::And(window.moved, moved), easy);
+            hard[t] = hn::AndNot(plain, maskOf(hn::Gt(asSigned(weight[t]), hn::Zero(di))));
             any_hard = hn::Or(any_hard, hard[t]);
             behind[t] = kBehind ? leftBehind(k, own, place, depth) : hn::Zero(d);
         }
@@ -304,7 +317,7 @@ struct OwnRule {
                     maskOf(hn::Eq(lowSigned(motion.of[t]), hn::Set(di, kNoHistory)));
                 Mask32 far_off = hn::Or(none, maskOf(hn::Gt(slid, hn::Set(di, kMaxSlide))));
                 if (job.start_age != nullptr) {
-                    const V32 surface = high(samples.blue_surface.of[t]);
+                    const V32 surface = surfaceOf(samples.blue_id.of[t]);
                     far_off = hn::Or(far_off, olderThan(job.start_age, k, surface));
                 }
                 weight[t] = hn::IfThenZeroElse(hn::And(hard[t], far_off), weight[t]);
@@ -332,7 +345,7 @@ struct FarRule {
         const Expected own = expectedAt(window.owner, k);
         const Expected far = expectedAt(window.far, k);
         for (int t = 0; t < 4; ++t) {
-            const V32 surface = high(samples.blue_surface.of[t]);
+            const V32 surface = surfaceOf(samples.blue_id.of[t]);
             const V32 depth = low(samples.depths.of[t]);
             const PlaceLanes place = placeOf(window.owner, own, surface, depth);
             const VI32 over_far = hn::Sub(asSigned(depth), far.depth);
@@ -353,7 +366,7 @@ HWY_INLINE void keep(const Site& site, const Samples& samples, const V32 weight[
         w[t] = asSigned(weight[t]);
         frame.weight[t] = weight[t];
         frame.red_green[t] = samples.red_green.of[t];
-        frame.blue[t] = hn::Or(low(samples.blue_surface.of[t]), behind[t]);
+        frame.blue[t] = hn::Or(low(samples.blue_id.of[t]), behind[t]);
     }
     frame.ex = site.ex;
     frame.ey = site.ey;
@@ -380,7 +393,7 @@ HWY_INLINE void keep(const Site& site, const Samples& samples, const V32 weight[
 constexpr int kRowsAhead = 2;
 HWY_INLINE void prefetchAhead(const SlotIn& slot, ptrdiff_t at) {
     for (const uint32_t* plane :
-         {slot.red_green, slot.blue_surface, slot.depths, slot.owner, slot.motion}) {
+         {slot.red_green, slot.blue_id, slot.depths, slot.owner, slot.motion}) {
         hwy::Prefetch(plane + at);
     }
 }
@@ -414,7 +427,7 @@ HWY_INLINE void stepWay(const Job& job, int k, bool last, const LayerLanes& laye
     const DI32 di;
     const SlotIn& slot = job.slot[k];
     Mask32 alive = hn::MaskFromVec(walker.alive);
-    if (k == kFlatFrames || k == kCalmFrames) {
+    if (k == kFlatFrames || k == kTurningFrames || k == kCalmFrames) {
         alive = hn::And(alive, maskOf(hn::Gt(limit, hn::Set(di, k))));
     }
     if (k > 0) {
@@ -480,7 +493,7 @@ HWY_INLINE void collect(const Job& job, int x, const Way& way, const Rule& rule,
         if (k > 0 && job.change_age != nullptr) {
             for (int t = 0; t < 4; ++t) {
                 weight[t] = hn::IfThenZeroElse(
-                    olderThan(job.change_age, k, high(samples.blue_surface.of[t])), weight[t]);
+                    olderThan(job.change_age, k, surfaceOf(samples.blue_id.of[t])), weight[t]);
             }
         }
         keep(site, samples, weight, behind, k > 0, kept);
@@ -606,6 +619,15 @@ HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen
     const VI32 height = hn::Sub(w.owner.depth, w.far.depth);
     w.layered = maskOf(hn::Gt(height, hn::Add(tolerance, hn::Add(sloped, sloped))));
     w.frames = choose(hn::Or(w.layered, inferred), hn::Set(di, kMaxRing), calm_frames);
+    const VI32 speed =
+        hn::Max(hn::Abs(lowSigned(w.owner.motion)), hn::Abs(highSigned(w.owner.motion)));
+    w.frames = choose(maskOf(hn::Gt(speed, hn::Set(di, kFast))),
+                      hn::Min(w.frames, hn::Set(di, kFastFrames)), w.frames);
+    if (job.turning != nullptr) {
+        const V32 turning = hn::GatherIndex(d, job.turning, asSigned(w.owner.surface));
+        const VI32 fewer = hn::Min(w.frames, hn::Set(di, kTurningFrames));
+        w.frames = choose(hn::Ne(turning, hn::Zero(d)), fewer, w.frames);
+    }
     w.slide = slideOf(w.owner.motion, w.far.motion);
     const VI32 none = hn::Set(di, kNoHistory);
     const Mask32 known = hn::Not(maskOf(
@@ -771,9 +793,11 @@ HWY_ATTR void gatherTile(const Job& job, const TileRect& tile, bool sums_valid) 
             }
             group.wanted = !hn::AllFalse(d, pixels);
             group.pixels = hn::VecFromMask(d, pixels);
-            group.window = windowOf(job, at, ownersOf<Nearest, kIdDepth>(near_strip, i * kLanes),
-                                    ownersOf<Farthest, kWithMotion>(far_strip, i * kLanes),
-                                    calmFrames(contrast, i * kLanes), pixels);
+            Owners seen = ownersOf<Nearest, kIdDepth>(near_strip, i * kLanes);
+            preferCentre<kIdDepth>(job, at, seen);
+            group.window =
+                windowOf(job, at, seen, ownersOf<Farthest, kWithMotion>(far_strip, i * kLanes),
+                         calmFrames(contrast, i * kLanes), pixels);
             group.walker = startWay(x, y, group.window.owner, pixels);
             group.way.frames = 0;
         }

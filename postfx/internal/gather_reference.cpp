@@ -120,15 +120,25 @@ Window lookAround(const Job& job, int x, int y) {
                         : lowContrast(job, x, y, kCalmShift) ? kCalmFrames
                                                              : kMaxRing;
     }
+    if (std::max(std::abs(seen.motion.x_fx8), std::abs(seen.motion.y_fx8)) > kFast) {
+        window.frames = std::min(window.frames, kFastFrames);
+    }
+    if (job.turning != nullptr && job.turning[seen.surface] != 0) {
+        window.frames = std::min(window.frames, kTurningFrames);
+    }
     window.slide = slideOf(seen.motion, window.far.motion);
     window.apart = window.layered && seen.motion.x_fx8 != kNoHistory &&
                    window.far.motion.x_fx8 != kNoHistory && window.slide > kApart;
     return window;
 }
 
+int surfaceAt(const SlotIn& slot, ptrdiff_t at) {
+    return highHalf(slot.blue_id[at]) & int(kSurfaceMask);
+}
+
 bool staleShading(const Job& job, const Window& window, int k, Place place, const SlotIn& slot,
                   ptrdiff_t at) {
-    const int surface = highHalf(slot.blue_surface[at]);
+    const int surface = surfaceAt(slot, at);
     if (job.change_age != nullptr && uint32_t(k) > job.change_age[surface]) {
         return true;
     }
@@ -186,8 +196,7 @@ void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, int k, int weight, int
            ex,
            ey,
            behind,
-           {lowHalf(slot.red_green[at]), highHalf(slot.red_green[at]),
-            lowHalf(slot.blue_surface[at])}};
+           {lowHalf(slot.red_green[at]), highHalf(slot.red_green[at]), lowHalf(slot.blue_id[at])}};
     taps.moments.add(weight, ex, ey);
     taps.old_weight += k > 0 ? weight : 0;
 }
@@ -196,7 +205,7 @@ void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, int k, int weight, int
 void collectFar(const Job& job, int x, int y, const Window& window, Taps& taps) {
     follow(job, x, y, window.far, std::min(kFarFrames, job.frames),
            [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion) {
-               const int surface = highHalf(slot.blue_surface[at]);
+               const int surface = surfaceAt(slot, at);
                const int depth = lowHalf(slot.depths[at]);
                const bool behind = placeOf(window.owner, k, surface, depth) == Place::farther;
                const bool there = placeOf(window.far, k, surface, depth) != Place::nearer;
@@ -213,28 +222,40 @@ bool leftBehind(const Window& window, int k, int depth) {
            above * 4 < window.owner.depthAt(k) - window.far.depthAt(k);
 }
 
+/// Behind an owner at rest something went by that is not behind it any more.
+bool passedBehind(const Window& window, const SlotIn& slot, ptrdiff_t at, Place place) {
+    return place == Place::farther && !window.moved &&
+           (highHalf(slot.blue_id[at]) & kMovedBit) != 0 &&
+           surfaceAt(slot, at) != window.far.surface;
+}
+
 /// Samples along the owner's way: its own, and what was seen beside it.
 void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps) {
-    follow(job, x, y, window.owner, std::min(window.frames, job.frames),
-           [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion motion) {
-               const int surface = highHalf(slot.blue_surface[at]);
-               const int depth = lowHalf(slot.depths[at]);
-               const Place place = placeOf(window.owner, k, surface, depth);
-               if (place != Place::same && !(place == Place::farther && window.layered)) {
-                   const Motion other = unpackMotion(slot.motion[at]);
-                   const bool left =
-                       job.start_age != nullptr && uint32_t(k) > job.start_age[surface];
-                   if (k > 0 && (left || other.x_fx8 == kNoHistory ||
-                                 slideOf(other, motion) * k > kMaxSlide)) {
-                       return;
-                   }
-               }
-               if (k > 0 && staleShading(job, window, k, place, slot, at)) {
-                   return;
-               }
-               addTap(taps, slot, at, k, weight, ex, ey,
-                      place == Place::farther && leftBehind(window, k, depth));
-           });
+    follow(
+        job, x, y, window.owner, std::min(window.frames, job.frames),
+        [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion motion) {
+            const int surface = surfaceAt(slot, at);
+            const int depth = lowHalf(slot.depths[at]);
+            const Place place = placeOf(window.owner, k, surface, depth);
+            if (k > 0 && passedBehind(window, slot, at, place)) {
+                return;
+            }
+            const bool plain = place == Place::same || (place == Place::farther && window.layered);
+            const bool tap_moved = (highHalf(slot.blue_id[at]) & kMovedBit) != 0;
+            if (!plain || (window.moved && tap_moved)) {
+                const Motion other = unpackMotion(slot.motion[at]);
+                const bool left = job.start_age != nullptr && uint32_t(k) > job.start_age[surface];
+                if (k > 0 &&
+                    (left || other.x_fx8 == kNoHistory || slideOf(other, motion) * k > kMaxSlide)) {
+                    return;
+                }
+            }
+            if (k > 0 && staleShading(job, window, k, place, slot, at)) {
+                return;
+            }
+            addTap(taps, slot, at, k, weight, ex, ey,
+                   place == Place::farther && leftBehind(window, k, depth));
+        });
 }
 
 /// The samples' plane at the pixel's centre. `behind` replaces the colours of taps behind.

@@ -116,6 +116,17 @@ HWY_INLINE Owners ownersOf(const OwnerStrip& strip, int x_in_tile) {
     return best;
 }
 
+/// What the centre itself shows of the owner is nearer to the pixel's own motion: seenOwner().
+template <int kPlanes>
+HWY_INLINE void preferCentre(const Job& job, ptrdiff_t at, Owners& best) {
+    const V32 mask = hn::Set(D32(), kSurfaceMask);
+    const Owners centre = samplesAt<kPlanes>(job.now, at);
+    const VI32 step = asSigned(hn::Sub(clampedLogDepth(best.depth), clampedLogDepth(centre.depth)));
+    const Mask32 close = maskOf(atMost(step, hn::Set(DI32(), kDepthTolerance)));
+    const Mask32 same = hn::Eq(hn::And(centre.id, mask), hn::And(best.id, mask));
+    takeWhere(hn::And(same, close), best, centre);
+}
+
 /// seenOwner().slope of the pixels at `at`.
 HWY_INLINE VI32 slopesOf(const Job& job, ptrdiff_t at, V32 surface, V32 depth) {
     const V32 mask = hn::Set(D32(), kSurfaceMask);
@@ -207,7 +218,8 @@ HWY_ATTR void recordTile(const Job& job, const TileRect& tile) noexcept {
         fillStrip<Nearest, kWithMotion | kWithNormal>(job, tile, y, strip);
         for (int x = tile.x0; x < tile.x1; x += lanes) {
             const ptrdiff_t at = y * job.stride + x;
-            const Owners seen = ownersOf<Nearest, kWithMotion | kWithNormal>(strip, x - tile.x0);
+            Owners seen = ownersOf<Nearest, kWithMotion | kWithNormal>(strip, x - tile.x0);
+            preferCentre<kWithMotion | kWithNormal>(job, at, seen);
             const V32 surface = hn::And(seen.id, hn::Set(d, kSurfaceMask));
             const V32 depth = clampedLogDepth(seen.depth);
             Recorded owner{pack(surface, seen.normal), depth, seen.motion};
@@ -216,11 +228,11 @@ HWY_ATTR void recordTile(const Job& job, const TileRect& tile) noexcept {
                             slopesOf(job, at, surface, depth), owner);
             }
             const SlotOut& out = job.record;
-            const V32 id = hn::And(load16(job.now.id + at), hn::Set(d, kSurfaceMask));
+            const V32 id = load16(job.now.id + at);
             const V32 own_depth = clampedLogDepth(hn::LoadU(d, job.now.depth + at));
             hn::StoreU(pack(load16(job.now.colour[0] + at), load16(job.now.colour[1] + at)), d,
                        out.red_green + at);
-            hn::StoreU(pack(load16(job.now.colour[2] + at), id), d, out.blue_surface + at);
+            hn::StoreU(pack(load16(job.now.colour[2] + at), id), d, out.blue_id + at);
             hn::StoreU(pack(own_depth, owner.depth), d, out.depths + at);
             hn::StoreU(owner.motion, d, out.motion + at);
             hn::StoreU(owner.owner, d, out.owner + at);

@@ -34,6 +34,11 @@ Owner seenOwner(const Job& job, int x, int y) noexcept {
     best = x + 1 < job.width ? better(best, column(x + 1)) : best;
 
     const ptrdiff_t centre = y * job.stride + x;
+    // What the centre itself shows of the owner is nearer to the pixel's own motion.
+    if (surfaceOf(job.now.id[centre]) == surfaceOf(job.now.id[best]) &&
+        logDepth16(job.now.depth[best]) - logDepth16(job.now.depth[centre]) <= kDepthTolerance) {
+        best = centre;
+    }
     Owner owner;
     owner.surface = surfaceOf(job.now.id[best]);
     owner.depth = logDepth16(job.now.depth[best]);
@@ -97,8 +102,7 @@ void recordTileReference(const Job& job, const TileRect& tile) noexcept {
             const Owner owner = inferOwner(job, x, y, seenOwner(job, x, y));
             const SlotOut& out = job.record;
             out.red_green[at] = packHalves(job.now.colour[0][at], job.now.colour[1][at]);
-            out.blue_surface[at] =
-                packHalves(job.now.colour[2][at], uint32_t(surfaceOf(job.now.id[at])));
+            out.blue_id[at] = packHalves(job.now.colour[2][at], job.now.id[at]);
             out.depths[at] = packHalves(logDepth16(job.now.depth[at]), uint32_t(owner.depth));
             out.motion[at] = packMotion(owner.motion);
             out.owner[at] = packHalves(

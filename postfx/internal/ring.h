@@ -13,8 +13,8 @@ namespace still::taa {
 /// share the image's stride (in elements).
 template <class U32>
 struct SlotPointers {
-    U32* red_green = nullptr;     ///< fx12, red in the low half
-    U32* blue_surface = nullptr;  ///< blue fx12 in the low half, surface of the sample in the high
+    U32* red_green = nullptr;  ///< fx12, red in the low half
+    U32* blue_id = nullptr;    ///< blue fx12 in the low half, id of the sample in the high
     U32* depths = nullptr;  ///< logDepth16 of the sample in the low half, of the owner in the high
     U32* motion = nullptr;  ///< of the owner, as in GBuffer::motion, x in the low half
     U32* owner =
@@ -61,6 +61,8 @@ struct Job {
     const uint32_t* change_age = nullptr;
     /// The same since a surface began to move: what was seen of it before is no longer there.
     const uint32_t* start_age = nullptr;
+    /// 1 for surfaces of objects that turn or bend, by surface number; null when there are none.
+    const uint32_t* turning = nullptr;
     int sample_cap = 64;
     int settled = 8;  ///< min(kSettled, sample_cap)
     bool camera_moved = false;

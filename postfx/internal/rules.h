@@ -41,6 +41,13 @@ constexpr int contrastBound(int largest, int shift) {
     return (largest >> shift) + 4;
 }
 
+/// Frames that are followed on an object that turns or bends: it is lit otherwise every frame, and
+/// its outline is not where its surface goes.
+constexpr int kTurningFrames = 3;
+/// Frames that are followed where the owner moves by more than kFast (1/256 pixel, larger axis): its
+/// motion differs from one pixel to the next, and the error of place grows with every frame.
+constexpr int kFastFrames = 2;
+constexpr int kFast = 24 * 256;
 /// Frames in which the farther of two surfaces is looked for.
 constexpr int kFarFrames = 4;
 /// A still pixel is shown as the mean of its samples from so many samples on.

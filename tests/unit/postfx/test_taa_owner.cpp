@@ -37,7 +37,7 @@ struct Slot {
     }
     taa::SlotIn in() {
         const taa::SlotOut o = out();
-        return {o.red_green, o.blue_surface, o.depths, o.motion, o.owner};
+        return {o.red_green, o.blue_id, o.depths, o.motion, o.owner};
     }
 };
 
