@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "demos/stillframe/atlas_page.h"
-#include "demos/stillframe/atlas_report.h"
 #include "demos/stillframe/cell_store.h"
 #include "demos/stillframe/progress.h"
 #include "demos/stillframe/report.h"
@@ -66,16 +65,15 @@ Outcome<void> firstFailure(const std::vector<Outcome<void>>& outcomes) {
 
 class AtlasRun {
   public:
-    AtlasRun(const AtlasOptions& options, std::vector<const AtlasCase*> cases,
-             std::vector<Mode> modes, FileCache cache)
-        : options_(options),
-          modes_(std::move(modes)),
+    AtlasRun(Size resolution, std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
+             FileCache cache)
+        : modes_(std::move(modes)),
           cache_(std::move(cache)),
           program_(programHash()),
           workers_(std::max(1, int(std::thread::hardware_concurrency()))),
           progress_(std::max(1, stepsOf(cases, modes_))) {
-        report_.width = options.resolution.width;
-        report_.height = options.resolution.height;
+        report_.width = resolution.width;
+        report_.height = resolution.height;
         report_.cases = std::move(cases);
         for (const Mode& mode : modes_) {
             report_.modes.push_back(mode.name);
@@ -91,7 +89,6 @@ class AtlasRun {
     Outcome<std::vector<SegmentMeasures>> cell(const PreparedCase& prepared, const Mode& mode);
     uint64_t keyOf(const PreparedCase& prepared, const Mode& mode) const;
 
-    const AtlasOptions& options_;
     std::vector<Mode> modes_;
     FileCache cache_;
     uint64_t program_;
@@ -121,9 +118,8 @@ Outcome<AtlasReport> AtlasRun::run() {
 }
 
 Outcome<void> AtlasRun::runCase(const AtlasCase& atlas_case) {
-    const Size size = options_.resolution;
     PreparedCase prepared{
-        &atlas_case, atlas_case.make(), viewOf(atlas_case, size.width, size.height), {}};
+        &atlas_case, atlas_case.make(), viewOf(atlas_case, report_.width, report_.height), {}};
     prepared.segments.resize(atlas_case.segments.size());
     for (size_t i = 0; i < atlas_case.segments.size(); ++i) {
         if (auto made = makeReferences(prepared, i); !made) {
@@ -216,6 +212,11 @@ Outcome<void> writeAll(const AtlasOptions& options, const AtlasReport& report,
 
 }  // namespace
 
+Outcome<AtlasReport> measureAtlas(std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
+                                  Size resolution, FileCache cache) {
+    return AtlasRun(resolution, std::move(cases), std::move(modes), std::move(cache)).run();
+}
+
 Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption) {
     auto cases = parseCases(options.scenes);
     auto modes = parseModes(options.presets, "--presets");
@@ -225,7 +226,8 @@ Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption) {
     return tryFolder(options.output, interruption)
         .and_then([&] { return FileCache::open(options.cache, interruption); })
         .and_then([&](FileCache cache) {
-            return AtlasRun(options, std::move(*cases), std::move(*modes), std::move(cache)).run();
+            return measureAtlas(std::move(*cases), std::move(*modes), options.resolution,
+                                std::move(cache));
         })
         .and_then([&](const AtlasReport& report) {
             return writeAll(options, report, interruption).and_then([&] {

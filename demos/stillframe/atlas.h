@@ -2,12 +2,20 @@
 // stillframe atlas
 
 #include "demos/stillframe/atlas_options.h"
+#include "demos/stillframe/atlas_report.h"
+#include "demos/stillframe/file_cache.h"
 #include "demos/stillframe/interruption.h"
+#include "demos/stillframe/mode.h"
 
 namespace still::command {
 
-/// Measures cases × ways of anti-aliasing and writes index.html, atlas.json and atlas.csv into the
-/// output folder. References and finished cells are kept in the cache.
+/// Measures cases × ways of anti-aliasing on all cores, with a progress bar. References and
+/// finished cells are kept in the cache.
+Outcome<AtlasReport> measureAtlas(std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
+                                  Size resolution, FileCache cache);
+
+/// measureAtlas() of the named ones; writes index.html, atlas.json and atlas.csv into the output
+/// folder.
 Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption);
 
 }  // namespace still::command

@@ -1,0 +1,107 @@
+#include "tests/stability/atlas_run.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "demos/stillframe/atlas.h"
+
+namespace still::test {
+namespace {
+
+using namespace command;
+
+bool isPublished(const std::string& mode) {
+    const char* const others[] = {"raw", "fxaa", "still", "fast", "tiny"};
+    return std::find(std::begin(others), std::end(others), mode) == std::end(others);
+}
+
+template <class T>
+T orFail(Outcome<T> outcome) {
+    if (!outcome) {
+        FAIL(outcome.error().message);
+    }
+    return std::move(*outcome);
+}
+
+}  // namespace
+
+AtlasCase atlasCase(const std::string& scene) {
+    const AtlasCase* found = findAtlasCase(scene);
+    if (found == nullptr) {
+        FAIL("no case named " << scene);
+    }
+    return *found;
+}
+
+AtlasCase quickCase(const std::string& scene) {
+    constexpr int kFrames = 8;
+    AtlasCase atlas = atlasCase(scene);
+    for (AtlasSegment& segment : atlas.segments) {
+        if (segment.name == "moving") {
+            segment.last = std::min(segment.last, segment.first + kFrames - 1);
+        }
+        if (segment.name == "moving" || (segment.name == "event" && !atlas.resize_frame)) {
+            segment.ssaa_samples = 64;
+        }
+    }
+    return atlas;
+}
+
+MeasuredScene::MeasuredScene(const AtlasCase& atlas, const std::string& modes, Size size) {
+    Interruption interruption;
+    FileCache cache = orFail(FileCache::open(STILL_STABILITY_CACHE, interruption));
+    AtlasReport report =
+        orFail(measureAtlas({&atlas}, orFail(parseModes(modes, "modes")), size, std::move(cache)));
+    results_ = std::move(report.results);
+}
+
+const SegmentMeasures& MeasuredScene::at(const std::string& segment,
+                                         const std::string& mode) const {
+    const auto found =
+        std::find_if(results_.begin(), results_.end(), [&](const AtlasResult& result) {
+            return result.segment == segment && result.preset == mode;
+        });
+    if (found == results_.end()) {
+        FAIL("not measured: " << segment << " " << mode);
+    }
+    return found->measures;
+}
+
+double MeasuredScene::leadDb(const std::string& segment, const std::string& mode) const {
+    return at(segment, "still").psnr - at(segment, mode).psnr;
+}
+
+double MeasuredScene::leadOfPublishedDb(const std::string& segment) const {
+    double best_db = 0;
+    for (const AtlasResult& result : results_) {
+        if (result.segment == segment && isPublished(result.preset)) {
+            best_db = std::max(best_db, result.measures.psnr);
+        }
+    }
+    return at(segment, "still").psnr - best_db;
+}
+
+double MeasuredScene::frameLeadDb(const std::string& segment, int frame) const {
+    const std::vector<FrameError>& ours = at(segment, "still").frames;
+    const std::vector<FrameError>& raw = at(segment, "raw").frames;
+    for (size_t i = 0; i < ours.size(); ++i) {
+        if (ours[i].frame == frame) {
+            return 20 * std::log10(raw[i].rms / ours[i].rms);
+        }
+    }
+    FAIL("frame " << frame << " is not compared");
+    return 0;
+}
+
+double MeasuredScene::flipAboveRaw(const std::string& segment) const {
+    const std::vector<FrameError>& ours = at(segment, "still").frames;
+    const std::vector<FrameError>& raw = at(segment, "raw").frames;
+    double most = 0;
+    for (size_t i = 0; i < ours.size(); ++i) {
+        most = std::max(most, ours[i].flip - raw[i].flip);
+    }
+    return most;
+}
+
+}  // namespace still::test
