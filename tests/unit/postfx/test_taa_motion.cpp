@@ -54,7 +54,7 @@ bool plain(const Player& player, int x, int y) {
                 high = std::max<int>(high, player.sample(c).at(i, j));
             }
         }
-        flat &= high - low <= taa::flatRange(high);
+        flat &= high - low <= taa::contrastBound(high, taa::kFlatShift);
     }
     return flat;
 }
