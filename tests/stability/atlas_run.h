@@ -11,7 +11,7 @@ namespace still::test {
 
 /// The case as it is in the atlas.
 AtlasCase atlasCase(const std::string& scene);
-/// With ssaa:64 and at most 8 frames where each frame needs a reference of its own.
+/// With references of ssaa:64 for what moves. Still scenes have one reference for all frames.
 AtlasCase quickCase(const std::string& scene);
 
 constexpr command::Size kAtlasSize{320, 180};

@@ -1,4 +1,4 @@
-// What takes too long for every day: all presets with full references, and large pictures.
+// What takes too long for every day: all presets, with full references.
 
 #include <catch2/catch.hpp>
 
@@ -6,20 +6,6 @@
 #include "tests/stability/bounds.h"
 
 using namespace still::test;
-
-namespace {
-
-/// `still` over raw where a moving camera has 960 × 540 pixels.
-double largeLeadDb(const char* scene) {
-    constexpr int kFrames = 4;
-    still::AtlasCase atlas = quickCase(scene);
-    still::AtlasSegment moving = atlas.segments.back();
-    moving.last = moving.first + kFrames - 1;
-    atlas.segments = {moving};
-    return MeasuredScene(atlas, "raw,still", {960, 540}).leadDb("moving", "raw");
-}
-
-}  // namespace
 
 TEST_CASE("no preset is ahead in the whole atlas, but for known misses", "[stability][slow]") {
     for (const StillBound& bound : stillBounds()) {
@@ -32,9 +18,4 @@ TEST_CASE("no preset is ahead in the whole atlas, but for known misses", "[stabi
         CHECK(MeasuredScene(atlasCase(bound.scene), "").leadOfPublishedDb("moving") >=
               bound.lead_db);
     }
-}
-
-TEST_CASE("a courtyard of 960 by 540 in motion is far better than a raw one", "[stability][slow]") {
-    CHECK(largeLeadDb("courtyard-pan") >= 7);
-    CHECK(largeLeadDb("courtyard-orbit") >= 7);
 }
