@@ -175,7 +175,7 @@ struct WindowLanes {
     V32 normal;
     VI32 slide;
     VI32 frames;  ///< to follow
-    Mask32 moved, layered, apart;
+    Mask32 moved, layered, apart, flat;
 };
 
 /// The accepted samples of the group's pixels.
@@ -619,6 +619,7 @@ HWY_INLINE WindowLanes windowOf(const Job& job, ptrdiff_t at, const Owners& seen
     const VI32 height = hn::Sub(w.owner.depth, w.far.depth);
     w.layered = maskOf(hn::Gt(height, hn::Add(tolerance, hn::Add(sloped, sloped))));
     w.frames = choose(hn::Or(w.layered, inferred), hn::Set(di, kMaxRing), calm_frames);
+    w.flat = maskOf(hn::Eq(w.frames, hn::Set(di, kFlatFrames)));
     const VI32 speed =
         hn::Max(hn::Abs(lowSigned(w.owner.motion)), hn::Abs(highSigned(w.owner.motion)));
     w.frames = choose(maskOf(hn::Gt(speed, hn::Set(di, kFast))),
@@ -708,8 +709,7 @@ HWY_INLINE void gatherGroup(const Job& job, int x, int y, const Group& group) {
         collectOwn(std::false_type());
     }
     fitLanes(kept, any_apart ? &behind : nullptr, separate, colour);
-    const Mask32 flat = maskOf(hn::Eq(window.frames, hn::Set(di, kFlatFrames)));
-    const Mask32 lone = hn::And(hn::AndNot(flat, pixels),
+    const Mask32 lone = hn::And(hn::AndNot(window.flat, pixels),
                                 maskOf(hn::Lt(kept.old_weight, hn::Set(di, kFrameWeight))));
     if (!hn::AllFalse(d, lone)) {
         mixSpatialLanes(job, x, y, kept.old_weight, lone, colour);

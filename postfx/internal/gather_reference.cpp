@@ -45,6 +45,7 @@ struct Window {
     bool moved = false;
     bool layered = false;   ///< two surfaces, one behind the other
     bool apart = false;     ///< … that move differently …
+    bool flat = false;      ///< one surface with next to no contrast
     int frames = kMaxRing;  ///< to follow: fewer where there is one surface with little contrast
     int slide = 0;          ///< … by this much per frame (1/256 pixel, larger axis)
 };
@@ -120,6 +121,7 @@ Window lookAround(const Job& job, int x, int y) {
                         : lowContrast(job, x, y, kCalmShift) ? kCalmFrames
                                                              : kMaxRing;
     }
+    window.flat = window.frames == kFlatFrames;
     if (std::max(std::abs(seen.motion.x_fx8), std::abs(seen.motion.y_fx8)) > kFast) {
         window.frames = std::min(window.frames, kFastFrames);
     }
@@ -325,7 +327,7 @@ void gatherPixel(const Job& job, int x, int y) noexcept {
             rgb[c] = job.now.colour[c][at];
         }
     }
-    if (taps.old_weight < kFrameWeight && window.frames != kFlatFrames) {
+    if (taps.old_weight < kFrameWeight && !window.flat) {
         mixSpatial(job, x, y, taps.old_weight, rgb);
     }
     for (int c = 0; c < 3; ++c) {

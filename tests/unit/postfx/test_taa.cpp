@@ -279,7 +279,7 @@ TEST_CASE("taa: still pixels need no ring", "[postfx][unit]") {
         Player player;
         player.settings.ring = ring;
         ExactSums sums(world.width, world.height);
-        for (int frame = 0; frame < 12; ++frame) {
+        for (int frame = 0; frame < 20; ++frame) {
             player.show(world, frame);
             sums.add(player);
         }
@@ -339,10 +339,10 @@ TEST_CASE("taa: a finished picture wakes when something moves and when light cha
     CHECK(other.taa.converged());
     other.show(lit, 70, {.shading_changed = true});
     CHECK_FALSE(other.taa.converged());
-    for (int frame = 71; frame < 71 + 64; ++frame) {
+    for (int frame = 71; frame < 71 + 63; ++frame) {
         other.show(lit, frame);
         CHECK_FALSE(other.taa.converged());
     }
-    other.show(lit, 71 + 64);
+    other.show(lit, 71 + 63);
     CHECK(other.taa.converged());
 }

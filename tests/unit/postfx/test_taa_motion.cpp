@@ -134,7 +134,7 @@ TEST_CASE("taa: a ramp is shown as it is at the pixels' centres wherever its sam
         const char* name;
         double level, per_x, per_y, worst;
     };
-    for (const Case& c : {Case{"steep", 560, 20, 20, 4}, Case{"gentle", 2000, 12, -7, 3}}) {
+    for (const Case& c : {Case{"steep", 560, 20, 20, 6}, Case{"gentle", 2000, 12, -7, 3}}) {
         for (const Point speed :
              {Point{0.37, 0.11}, Point{-1.5, 0.5}, Point{2, 1}, Point{0.013, -0.027}}) {
             World world{64, 48, true, {backdrop()}};
