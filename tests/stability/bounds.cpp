@@ -38,7 +38,7 @@ const std::vector<MovingBound>& movingBounds() {
         {.scene = "rotate", .rival = "variance", .flip_above_raw = 0.004},
         {.scene = "roll", .rival = "filament", .sharpness_min = 0.87},
         {.scene = "zoom", .rival = "filament"},
-        {.scene = "fast-pan", .rival = "intel", .flip_above_raw = 0.021},
+        {.scene = "fast-pan", .rival = "intel", .flip_above_raw = 0.012},
         {.scene = "light-flicker",
          .rival = "filament",
          .sharpness_min = 0.72,
