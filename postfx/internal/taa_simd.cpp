@@ -23,6 +23,8 @@
 #include "postfx/internal/taa_lanes-inl.h"
 #include "postfx/internal/record-inl.h"
 #include "postfx/internal/accumulate-inl.h"
+#include "postfx/internal/gather_fetch-inl.h"
+#include "postfx/internal/gather_layers-inl.h"
 #include "postfx/internal/gather-inl.h"
 // clang-format on
 #endif

@@ -166,7 +166,8 @@ TEST_CASE("taa: kernel sources contain no floating-point type", "[postfx][unit]"
     for (const char* part :
          {"ring.h", "rules.h", "owner.h", "record_reference.cpp", "record-inl.h", "accumulate.h",
           "accumulate_reference.cpp", "accumulate-inl.h", "gather.h", "gather_reference.cpp",
-          "gather-inl.h", "taa_lanes-inl.h", "taa_simd.cpp", "kernels.h"}) {
+          "gather_fetch-inl.h", "gather_layers-inl.h", "gather-inl.h", "taa_lanes-inl.h",
+          "taa_simd.cpp", "kernels.h"}) {
         sources.insert(root / "internal" / part);
     }
     for (const auto& entry : std::filesystem::directory_iterator(root / "internal")) {
