@@ -26,7 +26,6 @@ struct AtlasCase {
     std::vector<AtlasSegment> segments;  ///< in order of frames
     std::optional<int> event_frame{};    ///< recovery is counted from here
     std::optional<int> resize_frame{};   ///< earlier frames are rendered at half the size
-    double orbit_deg = 0;                ///< per frame
     bool slow = false;                   ///< left out unless asked for by name
 };
 

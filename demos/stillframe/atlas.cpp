@@ -119,7 +119,7 @@ Outcome<AtlasReport> AtlasRun::run() {
 
 Outcome<void> AtlasRun::runCase(const AtlasCase& atlas_case) {
     PreparedCase prepared{
-        &atlas_case, atlas_case.make(), viewOf(atlas_case, report_.width, report_.height), {}};
+        &atlas_case, atlas_case.make(), {.width = report_.width, .height = report_.height}, {}};
     prepared.segments.resize(atlas_case.segments.size());
     for (size_t i = 0; i < atlas_case.segments.size(); ++i) {
         if (auto made = makeReferences(prepared, i); !made) {

@@ -160,12 +160,6 @@ Outcome<std::vector<SegmentMeasures>> CellRun::finish() {
 
 }  // namespace
 
-FrameSettings viewOf(const AtlasCase& atlas, int width, int height) {
-    return {.width = width,
-            .height = height,
-            .camera = {.orbit_deg = atlas.orbit_deg, .orbit_frames = 1}};
-}
-
 std::vector<int> comparedFrames(const AtlasSegment& segment) {
     std::vector<int> frames;
     for (int frame = segment.first; frame <= segment.last; frame += segment.step) {

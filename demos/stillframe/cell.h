@@ -54,12 +54,9 @@ struct CaseFrame {
 struct PreparedCase {
     const AtlasCase* atlas = nullptr;
     Scene scene;
-    FrameSettings view;                            ///< size and camera
+    FrameSettings view;                            ///< size
     std::vector<std::vector<CaseFrame>> segments;  ///< the compared frames of each
 };
-
-/// Frame settings of a case: size and camera.
-FrameSettings viewOf(const AtlasCase& atlas, int width, int height);
 
 /// Frames of a segment that are compared.
 std::vector<int> comparedFrames(const AtlasSegment& segment);

@@ -56,10 +56,6 @@ HWY_INLINE void store16(V32 v, uint16_t* p) {
     hn::StoreU(narrow16(v), D16(), p);
 }
 
-HWY_INLINE Mask32 noLanes() {
-    return hn::MaskFromVec(hn::Zero(D32()));
-}
-
 /// roundShift() of rules.
 template <int kShift>
 HWY_INLINE VI32 roundedShift(VI32 v) {
@@ -178,9 +174,6 @@ HWY_INLINE V32 choose(Mask32 mask, V32 yes, V32 no) {
 }
 HWY_INLINE VI32 choose(Mask32 mask, VI32 yes, VI32 no) {
     return hn::IfThenElse(signedMask(mask), yes, no);
-}
-HWY_INLINE VI32 larger(VI32 a, VI32 b) {
-    return hn::Max(hn::Abs(a), hn::Abs(b));
 }
 /// Both coordinates of a pixel lie in the image.
 HWY_INLINE Mask32 within(VI32 v, int size) {
