@@ -79,7 +79,9 @@ struct FrameLoop::State {
     ColourImages filtered;      ///< mean of ssaa samples, or after spatial filter or sharpening
     Image<uint8_t> confidence;  ///< for sharpening only
     StageTimes times;
+    RasterCounters counters;
     int resolved_frame = kNoFrame;  ///< the frame that the TAA history ends with
+    bool shown = false;             ///< the output shows the history as it is
     /// What lies far ahead has moved by this much over the picture since the camera set off, 1/256
     /// pixel modulo 1 pixel.
     SampleOffset drift;
@@ -109,6 +111,8 @@ struct FrameLoop::State {
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
     void followCamera(const FrameState& frame);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
+    TaaSettings taaSettings() const;
+    bool rests(const FrameState& frame);
     void resolve(const FrameState& frame, SampleOffset offset);
     void resolveFrame(int frame);
     void resolveHistory(int frame);
@@ -168,6 +172,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
     const RasterSettings raster = rasterSettings();
     timed(times.transform_bin_ms, [&] { rasterizer.transformAndBin(list, view, raster, workers); });
     timed(times.raster_ms, [&] { rasterizer.rasterize(gbuffer, workers); });
+    counters = rasterizer.counters();
 }
 
 /// Later sub-frames of a frame see the same instant: nothing has moved since the one before.
@@ -236,6 +241,23 @@ SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample
     return {wrapped(offset.x_fx8 - drift.x_fx8), wrapped(offset.y_fx8 - drift.y_fx8)};
 }
 
+TaaSettings FrameLoop::State::taaSettings() const {
+    return {.simd = settings.simd, .sample_cap = sampleCap(), .ring = settings.policy.ring};
+}
+
+static bool nothingHappens(const FrameState& frame) {
+    return !frame.cut && !frame.lighting_changed && frame.changed_surfaces.empty() &&
+           frame.camera.view_projection == frame.camera_before.view_projection &&
+           std::none_of(frame.instances.begin(), frame.instances.end(),
+                        [](const Instance& instance) { return instance.moved; });
+}
+
+/// Whether the frame leaves a finished picture as it is. Then neither geometry nor pixels are
+/// touched.
+bool FrameLoop::State::rests(const FrameState& frame) {
+    return gathers() && nothingHappens(frame) && taa.rest(taaSettings());
+}
+
 /// Takes the sample that was just rasterized into the history.
 void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
     if (!gathers()) {
@@ -250,9 +272,7 @@ void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
                             .turning_surfaces = frame.turning_surfaces,
                             .jitter_x_fx8 = offset.x_fx8,
                             .jitter_y_fx8 = offset.y_fx8};
-    const TaaSettings taa_settings{
-        .simd = settings.simd, .sample_cap = sampleCap(), .ring = settings.policy.ring};
-    taa.resolve(gbuffer, evidence, taa_settings, workers);
+    taa.resolve(gbuffer, evidence, taaSettings(), workers);
 }
 
 /// Renders one frame into the history, which must end with the frame before (or `frame` is a
@@ -264,8 +284,15 @@ void FrameLoop::State::resolveFrame(int frame) {
         const uint32_t sample = sampleOf(frame, i);
         followCamera(state);
         const SampleOffset offset = offsetOf(state, sample);
-        rasterizeSample(state, offset, sample);
-        timed(times.taa_ms, [&] { resolve(state, offset); });
+        const bool rest = rests(state);
+        counters = {};
+        if (!rest || settings.fresh_gbuffer) {
+            rasterizeSample(state, offset, sample);
+        }
+        if (!rest) {
+            timed(times.taa_ms, [&] { resolve(state, offset); });
+            shown = false;
+        }
         freeze(state);
     }
     resolved_frame = frame;
@@ -278,7 +305,7 @@ void FrameLoop::State::resolveHistory(int frame) {
         times = {};
         resolveFrame(replayed);
     }
-    if (sharpens()) {
+    if (sharpens() && !shown) {
         timed(times.taa_ms, [&] { sharpenResolved(); });
     }
 }
@@ -415,10 +442,13 @@ FrameResult FrameLoop::render(int frame) {
     } else {
         state.renderAlone(frame);
     }
-    state.output.resize(state.settings.width, state.settings.height);
-    state.timed(state.times.output_ms, [&] {
-        encodeOutput(state.colour(), state.table, state.output.view(), state.workers);
-    });
+    if (!state.shown) {
+        state.output.resize(state.settings.width, state.settings.height);
+        state.timed(state.times.output_ms, [&] {
+            encodeOutput(state.colour(), state.table, state.output.view(), state.workers);
+        });
+    }
+    state.shown = state.temporal();
     return state.result();
 }
 
@@ -431,7 +461,7 @@ void FrameLoop::resize(int width, int height) {
 }
 
 const RasterCounters& FrameLoop::counters() const {
-    return state_->rasterizer.counters();
+    return state_->counters;
 }
 
 }  // namespace still

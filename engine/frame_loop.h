@@ -29,6 +29,10 @@ struct FrameSettings {
     SimdTarget simd = bestSimdTarget();
     Shading shading = Shading::deferred;
     PlaneSet planes{};  ///< in addition to what the other settings need
+    /// FrameResult::gbuffer is read: it holds this frame's samples in every pixel. Else, with
+    /// Method::gather, what is finished and at rest is not drawn again and keeps earlier samples.
+    /// Nothing else depends on it.
+    bool fresh_gbuffer = false;
     CameraChoice camera{};
     /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
     /// (a finished picture instead of a raw first frame).
@@ -48,8 +52,8 @@ struct StageTimes {
 /// What render() hands out; views are valid until the next render().
 struct FrameResult {
     ImageView<const Rgb8> output;
-    ColourPlanes linear;                    ///< the same before encoding, fx12
-    const GBuffer* gbuffer = nullptr;       ///< of the last sub-frame
+    ColourPlanes linear;               ///< the same before encoding, fx12
+    const GBuffer* gbuffer = nullptr;  ///< of the last sub-frame; see FrameSettings::fresh_gbuffer
     ImageView<const uint8_t> sample_count;  ///< Method::gather only, else empty
     /// How much of a pixel is known, up to confidence_full; empty without TAA. Samples in the
     /// pixel (Method::gather), or trust in history.
@@ -77,6 +81,7 @@ class FrameLoop {
     /// Frames before R are those of a loop that has had the new size from the start.
     void resize(int width, int height);
 
+    /// Of the sample that was rasterized last for the last frame; all zero when it needed none.
     const RasterCounters& counters() const;
 
   private:

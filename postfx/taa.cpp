@@ -88,7 +88,7 @@ struct Taa::State {
     void begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings);
     void noteChanges(const TaaFrame& frame, bool now);
     bool disturbed(const GBuffer& gbuffer, int tile) const;
-    bool nothingToDo(const GBuffer& gbuffer, bool shading_changed, int cap) const;
+    bool finished(int cap) const;
     void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
@@ -164,11 +164,15 @@ bool Taa::State::disturbed(const GBuffer& gbuffer, int tile) const {
     return moved;
 }
 
-bool Taa::State::nothingToDo(const GBuffer& gbuffer, bool shading_changed, int cap) const {
-    return frames > 0 && !shading_changed && cap == sample_cap &&
+/// Without motion or change the picture stays.
+bool Taa::State::finished(int cap) const {
+    return frames > 0 && cap == sample_cap &&
            std::all_of(tiles.begin(), tiles.end(),
-                       [](const TileMemory& t) { return t.summed && t.finished; }) &&
-           std::all_of(gbuffer.tiles.begin(), gbuffer.tiles.end(),
+                       [](const TileMemory& t) { return t.summed && t.finished; });
+}
+
+static bool allStill(const GBuffer& gbuffer) {
+    return std::all_of(gbuffer.tiles.begin(), gbuffer.tiles.end(),
                        [](const TileFacts& facts) { return facts.still(); });
 }
 
@@ -267,6 +271,18 @@ void Taa::State::showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTa
 Taa::Taa() : state_(std::make_unique<State>()) {}
 Taa::~Taa() = default;
 
+bool Taa::rest(const TaaSettings& settings) {
+    State& s = *state_;
+    if (int(s.ring.size()) != settings.ring || !s.finished(settings.sample_cap)) {
+        return false;
+    }
+    s.started.noteRest();
+    for (TileMemory& tile : s.tiles) {
+        tile.changed = false;
+    }
+    return true;
+}
+
 void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings,
                   Workers& workers) {
     assert(gbuffer.planes.motion);
@@ -275,13 +291,10 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     State& s = *state_;
     s.begin(gbuffer, frame, settings);
     const bool shading_changed = !s.first && changesShading(frame);
-    s.started.note(gbuffer, s.first, workers);
-    if (s.nothingToDo(gbuffer, shading_changed, settings.sample_cap)) {
-        for (TileMemory& tile : s.tiles) {
-            tile.changed = false;
-        }
+    if (!s.first && !shading_changed && allStill(gbuffer) && rest(settings)) {
         return;
     }
+    s.started.note(gbuffer, s.first, workers);
     s.noteChanges(frame, shading_changed);
     s.noteTurning(frame.turning_surfaces);
     s.forgetStarted(gbuffer, workers);

@@ -52,6 +52,11 @@ class Taa {
     void resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings,
                  Workers& workers);
 
+    /// For a frame in which nothing moved and nothing changed: whether its resolve() would leave
+    /// the image as it is, because that is finished. Then this call takes its place, and the frame
+    /// needs no G-buffer. False does nothing.
+    bool rest(const TaaSettings& settings);
+
     /// The resolved image; valid until the next resolve().
     ColourPlanes colour() const;
     /// Number of samples in each pixel, 1 … sample_cap; valid until the next resolve().

@@ -121,6 +121,7 @@ void Rasterizer::rasterize(GBuffer& out, Workers& workers) {
     while (s.scratch.size() < size_t(workers.threads())) {
         s.scratch.push_back(std::make_unique<internal::TileScratch>());
     }
+    s.counters.tiles = out.tiles.size();
     workers.parallelFor(int(out.tiles.size()), 1, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
             internal::renderTile(s.setup, s.chunks, s.inputs.size(), s.settings, i % out.tiles_x,

@@ -34,6 +34,7 @@ struct RasterCounters {
     uint64_t clipped = 0;    ///< went through the clipper
     uint64_t binned = 0;     ///< survived culling
     uint64_t tile_refs = 0;  ///< tiles × triangles
+    uint64_t tiles = 0;      ///< rasterized
 };
 
 /// Keeps its buffers from frame to frame. Not copyable, one frame at a time.

@@ -142,6 +142,7 @@ Outcome<void> settleSamples(Job& job) {
 
 /// Planes that TAA does not ask for by itself.
 void settlePlanes(Job& job) {
+    job.settings.fresh_gbuffer = job.options.hash || !job.dump.empty();
     job.settings.planes = {.normal = job.options.hash, .motion = job.options.hash};
     for (DumpPlane plane : job.dump) {
         job.settings.planes.normal |= plane == DumpPlane::normal;

@@ -18,6 +18,11 @@ class StartedSurfaces {
     /// Once per frame, in order. After `first` nothing has started. When the camera starts, so does
     /// everything.
     void note(const GBuffer& gbuffer, bool first, Workers& workers);
+    /// Instead, in a frame in which nothing moves.
+    void noteRest() {
+        now_ = {};
+        any_ = camera_ = camera_started_ = false;
+    }
     /// Once per frame that is kept, after note(). `ring`: frames after which starts are forgotten.
     void countAges(bool first, int ring);
     /// Kept frames since each surface started, 255 at most; null when that was long ago for all.

@@ -65,6 +65,7 @@ SceneRecord render(const Case& c, const Scene& scene, const Configuration& confi
     settings.simd = configuration.simd;
     settings.shading = configuration.shading;
     settings.planes = {.normal = true, .motion = true};
+    settings.fresh_gbuffer = true;
     FrameLoop loop(scene, settings, workers);
     SceneRecord record{c.scene, {}};
     for (int frame = 0; frame < c.frames; ++frame) {

@@ -42,6 +42,7 @@ FrameSettings smallSettings(AntiAliasing anti_aliasing) {
     settings.width = 97;
     settings.height = 70;
     settings.anti_aliasing = anti_aliasing;
+    settings.fresh_gbuffer = true;
     return settings;
 }
 

@@ -1,0 +1,108 @@
+// What a frame need not do when nothing in it is new.
+
+#include <catch2/catch.hpp>
+#include <utility>
+
+#include "engine/frame_loop.h"
+#include "engine/hash.h"
+#include "engine/shapes.h"
+
+using namespace still;
+
+namespace {
+
+constexpr int kFinished = 64;  ///< samples, and so the first frame at rest
+
+/// A floor and a box; the box moves in the frames `first` … `last`.
+Scene boxOnFloor(int first, int last) {
+    Scene scene;
+    scene.meshes = {shapes::plane(8, 8, 4, 4, 1), shapes::box(0.5f, 0.5f, 0.5f)};
+    scene.mesh_names = {"floor", "box"};
+    scene.materials.resize(2);
+    scene.materials[1].diffuse = {0.9f, 0.2f, 0.1f};
+    scene.meshes[1].parts[0].material = 1;
+    scene.objects.resize(2);
+    scene.objects[1].mesh = 1;
+    scene.objects[1].tracks.translation.keys = {{first - 1.0, {-1, 0.5, 0}},
+                                                {double(last), {1, 0.5, 0}}};
+    scene.camera.eye.keys = {{0, {1, 3, 5}}};
+    scene.camera.target.keys = {{0, {0, 0.5, 0}}};
+    scene.lights.sun = {{0.0f, -0.6f, -0.8f}, {0.7f, 0.7f, 0.7f}};
+    scene.background = {0.1f, 0.2f, 0.4f};
+    return scene;
+}
+
+FrameSettings settingsOf(int width, int height) {
+    FrameSettings settings;
+    settings.width = width;
+    settings.height = height;
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("frame_loop: a frozen scene does no work", "[unit][frame_loop]") {
+    const Scene scene = boxOnFloor(1000, 1001);
+    FrameSettings settings = settingsOf(97, 70);
+    int stages = 0;
+    settings.clock_ms = [&stages] { return double(++stages); };
+    Workers workers(1, Schedule::serial);
+    FrameLoop loop(scene, settings, workers);
+    const uint64_t finished = hashPlane(loop.render(kFinished - 1).output);
+    CHECK(loop.counters().tiles == 4);
+    for (int frame = kFinished; frame < kFinished + 80; ++frame) {
+        stages = 0;
+        const FrameResult result = loop.render(frame);
+        INFO("frame " << frame);
+        CHECK(loop.counters().triangles == 0);
+        CHECK(loop.counters().tiles == 0);
+        CHECK(stages == 0);
+        CHECK(result.converged);
+        REQUIRE(hashPlane(result.output) == finished);
+    }
+}
+
+TEST_CASE("frame_loop: a frozen scene wakes for a moving object, a light, a material and a camera",
+          "[unit][frame_loop]") {
+    constexpr int event = kFinished + 10;
+    const auto stepping = [](Track<double>& track) { track.keys = {{event - 1, 1}, {event, 0.5}}; };
+    Scene moves = boxOnFloor(event, event + 1), lit = boxOnFloor(1000, 1001), flies = lit;
+    Scene painted = lit, cut = lit;
+    stepping(lit.lights.sun_intensity);
+    flies.camera.eye.keys = {{event - 1, {1, 3, 5}}, {event, {1.1, 3, 5}}};
+    painted.materials.push_back(painted.materials[0]);
+    painted.materials[2].diffuse = {0.1f, 0.8f, 0.1f};
+    painted.material_tracks = {{.material = 0, .offset = {}, .swaps = {{event, 2}}}};
+    cut.cuts = {event};
+    for (const Scene* scene : {&moves, &lit, &flies, &painted, &cut}) {
+        Workers workers(1, Schedule::serial);
+        FrameLoop loop(*scene, settingsOf(97, 70), workers);
+        const uint64_t finished = hashPlane(loop.render(event - 1).output);
+        CHECK(loop.counters().tiles == 0);
+        const FrameResult woken = loop.render(event);
+        CHECK(loop.counters().tiles > 0);
+        CHECK_FALSE(woken.converged);
+        CHECK(hashPlane(woken.output) != finished);
+    }
+}
+
+TEST_CASE("frame_loop: a fresh G-buffer is drawn at rest, too, and changes nothing else",
+          "[unit][frame_loop]") {
+    const Scene scene = boxOnFloor(kFinished + 6, kFinished + 9);
+    FrameSettings settings = settingsOf(97, 70);
+    Workers workers(1, Schedule::serial);
+    FrameLoop lazy(scene, settings, workers);
+    settings.fresh_gbuffer = true;
+    FrameLoop eager(scene, settings, workers);
+    settings.anti_aliasing = AntiAliasing::none;
+    uint64_t last = 0;
+    for (int frame = 0; frame < kFinished + 20; ++frame) {
+        const FrameResult seen = eager.render(frame);
+        INFO("frame " << frame);
+        REQUIRE(hashPlane(lazy.render(frame).output) == hashPlane(seen.output));
+        const uint64_t sample = hashPlane(std::as_const(seen.gbuffer->red).view());
+        CHECK(sample != last);
+        CHECK(eager.counters().tiles == 4);
+        last = sample;
+    }
+}
