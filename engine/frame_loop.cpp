@@ -109,6 +109,7 @@ struct FrameLoop::State {
     uint32_t sampleOf(int frame, uint32_t subframe) const;
     RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
+    void addRasterTimes(const StageTimes& sample);
     void followCamera(const FrameState& frame);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
     TaaSettings taaSettings() const;
@@ -142,6 +143,7 @@ uint32_t FrameLoop::State::sampleOf(int frame, uint32_t subframe) const {
 RasterSettings FrameLoop::State::rasterSettings() const {
     RasterSettings raster{
         .simd = settings.simd, .shading = settings.shading, .planes = settings.planes};
+    raster.ticks = settings.ticks;
     if (temporal()) {
         const TaaPolicy& policy = settings.policy;
         raster.planes.motion = true;
@@ -170,9 +172,27 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                          .jitter_y_fx8 = offset.y_fx8,
                          .sample = sample};
     const RasterSettings raster = rasterSettings();
-    timed(times.transform_bin_ms, [&] { rasterizer.transformAndBin(list, view, raster, workers); });
-    timed(times.raster_ms, [&] { rasterizer.rasterize(gbuffer, workers); });
+    StageTimes sample_times;
+    timed(sample_times.transform_bin_ms,
+          [&] { rasterizer.transformAndBin(list, view, raster, workers); });
+    timed(sample_times.raster_ms, [&] { rasterizer.rasterize(gbuffer, workers); });
+    addRasterTimes(sample_times);
     counters = rasterizer.counters();
+}
+
+/// Adds one sample's times, each divided by what the workers did meanwhile.
+void FrameLoop::State::addRasterTimes(const StageTimes& sample) {
+    const StageTicks& ticks = rasterizer.counters().ticks;
+    const auto divide = [](double time_ms, uint64_t a, uint64_t b, double& a_ms, double& b_ms) {
+        if (a + b > 0) {
+            a_ms += time_ms * double(a) / double(a + b);
+            b_ms += time_ms * double(b) / double(a + b);
+        }
+    };
+    times.transform_bin_ms += sample.transform_bin_ms;
+    times.raster_ms += sample.raster_ms;
+    divide(sample.transform_bin_ms, ticks.transform, ticks.bin, times.transform_ms, times.bin_ms);
+    divide(sample.raster_ms, ticks.visibility, ticks.shade, times.visibility_ms, times.shade_ms);
 }
 
 /// Later sub-frames of a frame see the same instant: nothing has moved since the one before.

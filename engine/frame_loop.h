@@ -42,11 +42,15 @@ struct FrameSettings {
     int first_sample = 0;
     /// Returns milliseconds; when empty no times are taken.
     std::function<double()> clock_ms{};
+    /// See RasterSettings::ticks; splits the rasterizer's times by stages.
+    uint64_t (*ticks)() = nullptr;
 };
 
 /// Milliseconds spent on one frame (summed over sub-frames and ssaa samples).
 struct StageTimes {
     double transform_bin_ms = 0, raster_ms = 0, taa_ms = 0, output_ms = 0;
+    /// The first two by what their workers did; 0 without FrameSettings::ticks.
+    double transform_ms = 0, bin_ms = 0, visibility_ms = 0, shade_ms = 0;
 };
 
 /// What render() hands out; views are valid until the next render().

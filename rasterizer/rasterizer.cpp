@@ -80,6 +80,17 @@ struct Rasterizer::State {
             chunks.resize(inputs.size());
         }
     }
+
+    uint64_t now() const { return settings.ticks != nullptr ? settings.ticks() : 0; }
+
+    void prepareScratch(int workers) {
+        while (scratch.size() < size_t(workers)) {
+            scratch.push_back(std::make_unique<internal::TileScratch>());
+        }
+        for (const auto& each : scratch) {
+            each->counters = {};
+        }
+    }
 };
 
 Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
@@ -91,26 +102,30 @@ void Rasterizer::transformAndBin(const DrawList& list, const FrameView& view,
     s.settings = settings;
     internal::setUpFrame(list, view, settings, s.setup);
     s.cutVertices(list);
+    s.prepareScratch(workers.threads());
     const internal::RasterKernels& kernels = internal::kernelsFor(settings.simd);
-    workers.parallelFor(int(s.vertex_chunks.size()), 1, [&](int begin, int end, int) {
+    workers.parallelFor(int(s.vertex_chunks.size()), 1, [&](int begin, int end, int worker) {
+        const uint64_t start = s.now();
         for (int i = begin; i < end; ++i) {
             const VertexChunk& c = s.vertex_chunks[size_t(i)];
             kernels.transformVertices(s.setup.vertex_jobs[c.instance], int(c.begin), int(c.end));
         }
+        s.scratch[size_t(worker)]->counters.ticks.transform += s.now() - start;
     });
     s.cutTriangles(list);
-    workers.parallelFor(int(s.inputs.size()), 1, [&](int begin, int end, int) {
+    workers.parallelFor(int(s.inputs.size()), 1, [&](int begin, int end, int worker) {
+        const uint64_t start = s.now();
         for (int i = begin; i < end; ++i) {
             internal::binChunk(s.inputs[size_t(i)], view, s.chunks[size_t(i)]);
         }
+        s.scratch[size_t(worker)]->counters.ticks.bin += s.now() - start;
     });
     s.counters = {};
     for (size_t i = 0; i < s.inputs.size(); ++i) {
-        const RasterCounters& c = s.chunks[i].counters;
-        s.counters.triangles += c.triangles;
-        s.counters.clipped += c.clipped;
-        s.counters.binned += c.binned;
-        s.counters.tile_refs += c.tile_refs;
+        s.counters += s.chunks[i].counters;
+    }
+    for (const auto& each : s.scratch) {
+        s.counters.ticks += each->counters.ticks;
     }
 }
 
@@ -118,9 +133,7 @@ void Rasterizer::rasterize(GBuffer& out, Workers& workers) {
     State& s = *state_;
     const FrameView& view = *s.setup.tables.view;
     out.resize(view.width, view.height, s.settings.planes);
-    while (s.scratch.size() < size_t(workers.threads())) {
-        s.scratch.push_back(std::make_unique<internal::TileScratch>());
-    }
+    s.prepareScratch(workers.threads());
     s.counters.tiles = out.tiles.size();
     workers.parallelFor(int(out.tiles.size()), 1, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
@@ -128,6 +141,9 @@ void Rasterizer::rasterize(GBuffer& out, Workers& workers) {
                                  i / out.tiles_x, out, *s.scratch[size_t(worker)]);
         }
     });
+    for (const auto& each : s.scratch) {
+        s.counters += each->counters;
+    }
 }
 
 const RasterCounters& Rasterizer::counters() const {

@@ -27,14 +27,49 @@ struct RasterSettings {
     /// The motion plane follows the camera alone, as if nothing else moved (depth and inverse
     /// view-projection are all that some methods have). Moved bits of ids are the same.
     bool camera_motion_only = false;
+    /// A clock in any unit that grows, called by all workers; null: RasterCounters::ticks stay 0.
+    uint64_t (*ticks)() = nullptr;
 };
 
+/// Ticks of RasterSettings::ticks that the workers spent, summed over them.
+struct StageTicks {
+    uint64_t transform = 0, bin = 0;
+    uint64_t visibility = 0;  ///< collecting a tile's triangles, coverage and depth
+    uint64_t shade = 0;       ///< with shading setup and all planes' writes
+
+    void operator+=(const StageTicks& o) {
+        transform += o.transform;
+        bin += o.bin;
+        visibility += o.visibility;
+        shade += o.shade;
+    }
+};
+
+/// Of one frame: those of the lists after transformAndBin(), the others after rasterize().
 struct RasterCounters {
-    uint64_t triangles = 0;  ///< submitted
-    uint64_t clipped = 0;    ///< went through the clipper
-    uint64_t binned = 0;     ///< survived culling
-    uint64_t tile_refs = 0;  ///< tiles × triangles
-    uint64_t tiles = 0;      ///< rasterized
+    uint64_t triangles = 0;       ///< submitted
+    uint64_t clipped = 0;         ///< went through the clipper
+    uint64_t binned = 0;          ///< survived culling
+    uint64_t tile_refs = 0;       ///< tiles × triangles
+    uint64_t tiles = 0;           ///< rasterized
+    uint64_t tiles_empty = 0;     ///< of them, reached by no triangle's bin
+    uint64_t blocks_hidden = 0;   ///< 8 × 8 blocks × triangles behind what is there; SIMD only
+    uint64_t blocks_outside = 0;  ///< the same, beyond an edge of the triangle; SIMD only
+    uint64_t pixels_shaded = 0;   ///< with a surface; deferred shading only
+    StageTicks ticks;
+
+    void operator+=(const RasterCounters& o) {
+        triangles += o.triangles;
+        clipped += o.clipped;
+        binned += o.binned;
+        tile_refs += o.tile_refs;
+        tiles += o.tiles;
+        tiles_empty += o.tiles_empty;
+        blocks_hidden += o.blocks_hidden;
+        blocks_outside += o.blocks_outside;
+        pixels_shaded += o.pixels_shaded;
+        ticks += o.ticks;
+    }
 };
 
 /// Keeps its buffers from frame to frame. Not copyable, one frame at a time.

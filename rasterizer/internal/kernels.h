@@ -168,7 +168,8 @@ struct TileContext {
     /// One per ref; filled where it is read: before visibility for alpha (and in forward mode for
     /// all), after it for visible triangles.
     ShadeTriangle* shade = nullptr;
-    uint8_t features = 0;  ///< union of the surfaces that may be visible
+    uint8_t features = 0;                            ///< union of the surfaces that may be visible
+    uint32_t blocks_hidden = 0, blocks_outside = 0;  ///< counted by rasterizeTile
     TilePlanes planes{};
     MatrixF reproject{};  ///< tile-local: (x, y, z, 1) → (x_local·w, y_local·w, z', w) before
 };

@@ -138,6 +138,7 @@ class TileRenderer {
         for (int y = 0; y < tile_.height; ++y) {
             for (int x = 0; x < tile_.width; ++x) {
                 const uint32_t ref = tile_.visible[y * kTileSize + x];
+                scratch_.counters.pixels_shaded += ref != kNothingVisible ? 1 : 0;
                 if (ref != last && ref != kNothingVisible) {
                     prepare(ref);
                     tile_.features |= setup_.surfaces[tile_.refs[ref].triangle->surface].features;
@@ -195,6 +196,8 @@ void writeStillMotion(const TilePlanes& planes, int width, int height, uint8_t& 
 void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
                 const RasterSettings& settings, int tx, int ty, GBuffer& out,
                 TileScratch& scratch) {
+    const auto now = [&] { return settings.ticks != nullptr ? settings.ticks() : 0; };
+    const uint64_t start = now();
     const FrameTables& frame = setup.tables;
     TileContext tile;
     tile.frame = &frame;
@@ -232,6 +235,7 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
         tile.features = 0xFF;
     }
     kernels.rasterizeTile(tile);
+    const uint64_t visible = now();
     if (!tile.forward) {
         renderer.prepareVisible();
         kernels.shadeTile(tile);
@@ -239,6 +243,12 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
     if (still_motion) {
         writeStillMotion(planes, tile.width, tile.height, motion_is_zero);
     }
+    RasterCounters& counters = scratch.counters;
+    counters.tiles_empty += tile.ref_count == 0 ? 1 : 0;
+    counters.blocks_hidden += tile.blocks_hidden;
+    counters.blocks_outside += tile.blocks_outside;
+    counters.ticks.visibility += visible - start;
+    counters.ticks.shade += now() - visible;
 }
 
 }  // namespace still::internal

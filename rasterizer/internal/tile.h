@@ -37,6 +37,7 @@ struct TileScratch {
     std::vector<uint8_t> shade_ready;
     alignas(64) float depth[kTilePixels];
     alignas(64) uint32_t visible[kTilePixels];
+    RasterCounters counters;  ///< what this worker adds to the frame's
 };
 
 /// Renders tile (tx, ty).

@@ -191,6 +191,7 @@ struct TriangleInTile {
         for (int by = plane.y0 & ~kLast; by <= plane.y1; by += kBlockSize) {
             for (int bx = plane.x0 & ~kLast; bx <= plane.x1; bx += kBlockSize) {
                 if (hidden(bx, by)) {
+                    ++tile.blocks_hidden;
                     continue;
                 }
                 int32_t corner[3];
@@ -203,6 +204,7 @@ struct TriangleInTile {
                     all_inside &= corner[k] + low * kLast >= 0;
                 }
                 if (outside) {
+                    ++tile.blocks_outside;
                     continue;
                 }
                 if (all_inside) {
