@@ -1,6 +1,8 @@
 #include "demos/scenes/builtin.h"
 
 #include "demos/scenes/atlas.h"
+#include "demos/scenes/bench_content.h"
+#include "demos/scenes/bench_scenes.h"
 #include "demos/scenes/scenes.h"
 
 namespace still {
@@ -23,6 +25,14 @@ constexpr Entry kScenes[] = {
     {"depth", scenes::makeDepth},
     {"zoo", scenes::makeZoo},
     {"pan", scenes::makePan},
+};
+
+/// Made for measuring, listed by benchSceneNames().
+constexpr Entry kBenchScenes[] = {
+    {"bench-tiny", scenes::makeBenchTiny},
+    {"bench-mid", scenes::makeBenchMid},
+    {"bench-fill-back", scenes::makeBenchFillBack},
+    {"bench-fill-front", scenes::makeBenchFillFront},
 };
 
 const std::string kAtlasPrefix = "atlas-";
@@ -49,9 +59,22 @@ std::vector<std::string> builtinSceneNames() {
     return names;
 }
 
+std::vector<std::string> benchSceneNames() {
+    std::vector<std::string> names{"courtyard"};
+    for (const Entry& entry : kBenchScenes) {
+        names.emplace_back(entry.name);
+    }
+    return names;
+}
+
 Result<Scene> builtinScene(const std::string& name) {
     if (name.starts_with(kAtlasPrefix)) {
         return atlasScene(name);
+    }
+    for (const Entry& entry : kBenchScenes) {
+        if (name == entry.name) {
+            return entry.make();
+        }
     }
     std::string known;
     for (const Entry& entry : kScenes) {
@@ -61,7 +84,7 @@ Result<Scene> builtinScene(const std::string& name) {
         known += (known.empty() ? "" : ", ") + std::string(entry.name);
     }
     return fail("builtin:" + name + ": unknown scene, expected one of " + known +
-                ", or atlas-NAME of the failure atlas");
+                ", atlas-NAME of the failure atlas, or bench-NAME");
 }
 
 }  // namespace still

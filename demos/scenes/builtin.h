@@ -13,8 +13,9 @@ namespace still {
 /// Names that builtinScene() takes, courtyard first.
 std::vector<std::string> builtinSceneNames();
 
-/// Also takes "atlas-NAME" for every case of demos/scenes/atlas.h. The error lists the names, those
-/// of the atlas only where one of them was asked for.
+/// Also takes "atlas-NAME" for every case of demos/scenes/atlas.h, and the names of
+/// demos/scenes/bench_scenes.h. The error lists the names, those of the atlas only where one of
+/// them was asked for.
 Result<Scene> builtinScene(const std::string& name);
 
 }  // namespace still

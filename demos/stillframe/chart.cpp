@@ -5,6 +5,7 @@
 #include <list>
 #include <thread>
 
+#include "demos/scenes/bench_scenes.h"
 #include "demos/stillframe/chart_report.h"
 #include "demos/stillframe/progress.h"
 #include "demos/stillframe/report.h"

@@ -21,14 +21,6 @@ double nowMs() {
     return Milliseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Holds a track at its first key.
-template <class T>
-void hold(Track<T>& track) {
-    if (!track.keys.empty()) {
-        track.keys.erase(track.keys.begin() + 1, track.keys.end());
-    }
-}
-
 double medianOf(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const size_t count = values.size();
@@ -154,33 +146,6 @@ int settledFrame(int frames) {
 bool isCompared(const ChartSegment& segment, int frame) {
     const int since = frame - settledFrame(segment.frames);
     return since >= 0 && since % kCompareStep == 0;
-}
-
-Scene frozen(Scene scene) {
-    for (SceneObject& object : scene.objects) {
-        hold(object.tracks.translation);
-        hold(object.tracks.rotation_deg);
-        hold(object.tracks.scale);
-    }
-    for (MaterialTracks& tracks : scene.material_tracks) {
-        hold(tracks.offset);
-        std::erase_if(tracks.swaps, [](const MaterialSwap& swap) { return swap.frame > 0; });
-    }
-    hold(scene.lights.ambient_intensity);
-    hold(scene.lights.sun_intensity);
-    for (Track<double>& intensity : scene.lights.point_intensity) {
-        hold(intensity);
-    }
-    hold(scene.camera.eye);
-    hold(scene.camera.target);
-    hold(scene.camera.up);
-    hold(scene.camera.fov_y_deg);
-    if (scene.camera_file) {
-        auto& frames = scene.camera_file->frames;
-        frames.erase(frames.begin() + 1, frames.end());
-    }
-    scene.cuts.clear();
-    return scene;
 }
 
 Outcome<std::vector<ChartPoint>> measureSegment(const ChartSegment& segment,

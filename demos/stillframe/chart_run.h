@@ -34,9 +34,6 @@ int settledFrame(int frames);
 /// True for the frames of a segment that are compared with a reference.
 bool isCompared(const ChartSegment& segment, int frame);
 
-/// The scene without motion of any kind, as it stands in its first frame.
-Scene frozen(Scene scene);
-
 /// Measures all modes with each number of threads. Within one number, the modes take turns frame by
 /// frame, so that whatever else the machine does falls on all of them. Supersampling renders the
 /// compared frames only. `advance` is called once for each reference and each frame.

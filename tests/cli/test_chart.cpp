@@ -128,15 +128,4 @@ TEST_CASE("chart: what cannot be meant or read is refused in one line", "[cli]")
     refused("missing.obj --output out", 3);
 }
 
-TEST_CASE("chart: a frozen scene is still", "[cli]") {
-    Scene scene;
-    scene.camera.eye.keys = {{0, {0, 0, 5}}, {9, {1, 0, 5}}};
-    scene.lights.sun_intensity.keys = {{0, 1.0}, {3, 0.5}};
-    scene.cuts = {4};
-    REQUIRE_FALSE(isStill(scene, {}));
-    const Scene frozen = command::frozen(scene);
-    CHECK(isStill(frozen, {}));
-    CHECK(frozen.camera.eye.keys.size() == 1);
-}
-
 }  // namespace still::test

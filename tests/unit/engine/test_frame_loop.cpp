@@ -265,3 +265,24 @@ TEST_CASE("frame_loop: requested planes exist and times are taken by the given c
     CHECK(result.sample_count.empty());
     CHECK(loop.counters().triangles == scene.triangleCount());
 }
+
+TEST_CASE("frame_loop: ticks split the rasterizer's times by stages", "[unit][frame_loop]") {
+    const Scene scene = smallScene(false);
+    FrameSettings settings = smallSettings(AntiAliasing::none);
+    settings.clock_ms = [now_ms = 0.0]() mutable { return now_ms += 1; };
+    Workers workers(1, Schedule::serial);
+    const StageTimes whole = FrameLoop(scene, settings, workers).render(0).times;
+    CHECK(whole.transform_ms + whole.bin_ms + whole.visibility_ms + whole.shade_ms == 0);
+    static uint64_t ticks;
+    ticks = 0;
+    settings.ticks = [] { return ticks += 3; };
+    FrameLoop loop(scene, settings, workers);
+    const StageTimes split = loop.render(0).times;
+    CHECK(split.transform_ms > 0);
+    CHECK(split.bin_ms > 0);
+    CHECK(split.transform_ms + split.bin_ms == Approx(split.transform_bin_ms));
+    CHECK(split.visibility_ms == Approx(split.raster_ms / 2));  // one tick each, in every tile
+    CHECK(split.shade_ms == Approx(split.raster_ms / 2));
+    const size_t tiles = loop.render(1).gbuffer->tiles.size();
+    CHECK(loop.counters().ticks.visibility == 3 * tiles);
+}

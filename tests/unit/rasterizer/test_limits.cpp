@@ -196,3 +196,34 @@ TEST_CASE("limits: counters tell what became of the triangles", "[limits]") {
     CHECK(rasterizer.counters().binned >= 2);
     CHECK(rasterizer.counters().tile_refs >= 2);
 }
+
+TEST_CASE("limits: counters tell what became of tiles, blocks and pixels", "[limits]") {
+    FrameView view;
+    view.width = 3 * kTileSize;
+    view.height = kTileSize;
+    TestScene scene;
+    // Covers half of the middle tile, twice: the farther one second.
+    for (const float z : {-0.5f, 0.5f}) {
+        const float x = 1.0f / 3;
+        scene.addTriangle({-x, -1, z, {}}, {x, -1, z, {}}, {-x, 1, z, {}});
+    }
+    const DrawList list = scene.list();
+    Workers workers(2);
+    Rasterizer rasterizer;
+    GBuffer out;
+    for (int frame = 0; frame < 2; ++frame) {  // counters are of one frame
+        rasterizer.transformAndBin(list, view, {}, workers);
+        rasterizer.rasterize(out, workers);
+        const RasterCounters& counters = rasterizer.counters();
+        CHECK(counters.tiles_empty == 2);
+        const int seen = coveredPixels(out);
+        CHECK(seen > kTileSize * kTileSize / 2 - kTileSize);
+        CHECK(counters.pixels_shaded == uint64_t(seen));
+        CHECK(counters.ticks.shade == 0);
+        if (bestSimdTarget() != SimdTarget::scalar) {
+            // All but the blocks on the diagonal are as much hidden as they are outside.
+            CHECK(counters.blocks_hidden >= 28);
+            CHECK(counters.blocks_outside >= 28);
+        }
+    }
+}
