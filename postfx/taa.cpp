@@ -122,7 +122,9 @@ void Taa::State::begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaS
         count.resize(width, height);
         shown_count.resize(width, height);
     }
-    if (frames == 0 || settings.sample_cap < sample_cap) {  // complete sums may have too much
+    // Complete sums may have too much, and settled ones may not be so any more.
+    if (frames == 0 || settings.sample_cap < sample_cap ||
+        std::min(taa::kSettled, settings.sample_cap) != std::min(taa::kSettled, sample_cap)) {
         tiles.assign(gbuffer.tiles.size(), TileMemory{});
     }
     first = frames == 0;

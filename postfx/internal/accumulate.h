@@ -17,8 +17,8 @@ struct SumsResult {
     bool changed = false;  ///< some pixel took a sample or lost its sum
 };
 
-/// Adds this frame's samples to the sums and shows the settled ones. `restart`: there are no sums
-/// yet. A pixel where something moved loses its sum; one where shading changed starts anew.
+/// Adds this frame's samples to the sums, of which the settled ones are shown. `restart`: there are
+/// no sums yet. A pixel where something moved loses its sum; one where shading changed starts anew.
 SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillness stillness,
                                    bool restart) noexcept;
 

@@ -19,11 +19,19 @@ uint8_t disturbance(const Job& job, uint16_t id) {
     return changed ? kChanged : 0;
 }
 
-void show(const Job& job, ptrdiff_t at, int count) {
+/// Adds this frame's sample to a pixel that has `count`.
+void grow(const Job& job, ptrdiff_t at, int count) {
     for (int c = 0; c < 3; ++c) {
-        job.shown[c][at] = job.sums.mean[c][at];
+        const uint16_t* from = count < job.settled ? job.sums.mean[c] : job.shown[c];
+        uint16_t* to = count + 1 < job.settled ? job.sums.mean[c] : job.shown[c];
+        const Sum past = count == 0 ? Sum{} : Sum{from[at], job.sums.rest[c][at]};
+        const Sum sum = addSample(past, count, job.now.colour[c][at]);
+        to[at] = uint16_t(sum.mean);
+        job.sums.rest[c][at] = int8_t(sum.rest);
     }
-    job.shown_count[at] = uint8_t(count);
+    if (count + 1 >= job.settled) {
+        job.shown_count[at] = uint8_t(count + 1);
+    }
 }
 
 }  // namespace
@@ -62,18 +70,9 @@ SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillne
             result.changed |= disturbance != 0 && count != 0;
             count = disturbance != 0 ? 0 : count;
             if (disturbance != kMoved && count < job.sample_cap) {
-                for (int c = 0; c < 3; ++c) {
-                    const Sum past =
-                        count == 0 ? Sum{} : Sum{job.sums.mean[c][at], job.sums.rest[c][at]};
-                    const Sum sum = addSample(past, count, job.now.colour[c][at]);
-                    job.sums.mean[c][at] = uint16_t(sum.mean);
-                    job.sums.rest[c][at] = int8_t(sum.rest);
-                }
+                grow(job, at, count);
                 ++count;
                 result.changed = true;
-                if (count >= job.settled) {
-                    show(job, at, count);
-                }
             }
             job.sums.count[at] = uint8_t(count);
             result.settled &= count >= job.settled;

@@ -38,9 +38,10 @@ struct Current {
 };
 
 /// Sums of the samples of pixels that stand still. mean · count + rest is the sum, and mean is the
-/// sum divided by count, rounded half up. |rest| ≤ 127 because count ≤ 255.
+/// sum divided by count, rounded half up. |rest| ≤ 127 because count ≤ 255. From Job::settled samples
+/// on, the mean is what Job::shown shows, and stands there only.
 struct StillSums {
-    uint16_t* mean[3] = {};
+    uint16_t* mean[3] = {};  ///< of fewer samples
     int8_t* rest[3] = {};
     uint8_t* count = nullptr;
 };

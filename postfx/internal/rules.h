@@ -44,8 +44,8 @@ constexpr int contrastBound(int largest, int shift) {
 /// Frames that are followed on an object that turns or bends: it is lit otherwise every frame, and
 /// its outline is not where its surface goes.
 constexpr int kTurningFrames = 3;
-/// Frames that are followed where the owner moves by more than kFast (1/256 pixel, larger axis): its
-/// motion differs from one pixel to the next, and the error of place grows with every frame.
+/// Frames that are followed where the owner moves by more than kFast (1/256 pixel, larger axis):
+/// its motion differs from one pixel to the next, and the error of place grows with every frame.
 constexpr int kFastFrames = 2;
 constexpr int kFast = 24 * 256;
 /// Frames in which the farther of two surfaces is looked for.
@@ -91,6 +91,16 @@ constexpr Sum addSample(Sum sum, int count, int sample) {
     const int step = floorDiv(excess + grown / 2, grown);
     return {sum.mean + step, excess - step * grown};
 }
+
+/// floor(2^16 / n) for 1 … 255, at most 2^16 − 1.
+constexpr std::array<uint16_t, 256> makeShortReciprocals() {
+    std::array<uint16_t, 256> table{};
+    for (int n = 1; n < 256; ++n) {
+        table[size_t(n)] = uint16_t(std::min(65536 / n, 65535));
+    }
+    return table;
+}
+inline constexpr std::array<uint16_t, 256> kShortReciprocals = makeShortReciprocals();
 
 /// Weight of the right (lower) one of two neighbouring samples, 0 … kAxisWeight, for a pixel centre
 /// that lies f/256 between them: a box of one pixel, its sides softened to ramps over 0.2 … 0.8.
