@@ -14,7 +14,9 @@ case "${1:-}" in
         ;;
 esac
 
-install_packages clang
+# The second line is for bench_peer alone, which is left out or skipped without them.
+install_packages clang \
+    libegl-dev libgles-dev libegl-mesa0 libgl1-mesa-dri
 cmake --preset release -DSTILL_TESTS=ON >/dev/null
 cmake --build --preset release
 ctest --preset release --parallel "$(nproc)" "${select[@]}"

@@ -1,0 +1,254 @@
+// bench_peer SCENE: the same frames by another renderer on the same CPU, OpenGL ES on Mesa's
+// llvmpipe or on SwiftShader, and the time they take. What is measured, and how the peer is made as
+// fast as it can be: tests/bench/README.md.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "demos/scenes/bench_scenes.h"
+#include "demos/stillframe/options.h"
+#include "demos/stillframe/png.h"
+#include "demos/stillframe/scene_source.h"
+#include "tests/bench/peer/check.h"
+#include "tests/bench/peer/measure.h"
+
+namespace still::peer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using command::ExitCode;
+using command::Failure;
+using command::Outcome;
+
+/// Tells CTest that the test was skipped: this machine has no such driver.
+constexpr int kSkipped = 77;
+constexpr int kCheckedFrame = 15;
+
+struct Options {
+    std::string scene, driver = "llvmpipe", libraries, png, resolution = "1920x1080";
+    std::vector<std::string> motions;
+    int threads = int(std::max(1u, std::thread::hardware_concurrency()));
+    int frames = 20;
+    bool json = false, check = false;
+};
+
+/// Peak since restartMemoryPeak(), in bytes; 0 where the system does not say.
+uint64_t memoryPeak() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmHWM:")) {
+            return std::stoull(line.substr(6)) * 1024;
+        }
+    }
+    return 0;
+}
+
+/// What it took to load the scene does not count against the peer.
+void restartMemoryPeak() {
+    std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+/// Nearest rank for the 95th percentile; the median of an even number is the mean of the middle
+/// two.
+Json statistics(std::vector<double> times_ms) {
+    std::sort(times_ms.begin(), times_ms.end());
+    const size_t count = times_ms.size();
+    return {{"min_ms", times_ms[0]},
+            {"median_ms", (times_ms[(count - 1) / 2] + times_ms[count / 2]) / 2},
+            {"p95_ms", times_ms[(count * 95 + 99) / 100 - 1]}};
+}
+
+Json timesJson(const PeerTimes& times) {
+    Json json;
+    json["stages"] = {
+        {"depth", statistics(times.depth_ms)},     {"lambert", statistics(times.lambert_ms)},
+        {"gbuffer", statistics(times.gbuffer_ms)}, {"taa", statistics(times.taa_ms)},
+        {"output", statistics(times.output_ms)},
+    };
+    json["total"] = statistics(times.frame_ms);
+    json["pipelined_ms"] = times.pipelined_ms;
+    json["peak_rss_bytes"] = memoryPeak();
+    return json;
+}
+
+void printTimes(const std::string& scene, const char* motion, const Json& result) {
+    std::printf("%s %s, min / median / p95 ms\n", scene.c_str(), motion);
+    const auto line = [](const char* what, const Json& s) {
+        std::printf("  %-8s %8.2f %8.2f %8.2f\n", what, s["min_ms"].get<double>(),
+                    s["median_ms"].get<double>(), s["p95_ms"].get<double>());
+    };
+    for (const auto& [stage, times] : result["stages"].items()) {
+        line(stage.c_str(), times);
+    }
+    line("total", result["total"]);
+    std::printf("  in a row %7.2f\n", result["pipelined_ms"].get<double>());
+}
+
+Json checkJson(const PictureCheck& check) {
+    return {{"raw_db", check.raw_db},
+            {"motion", check.motion},
+            {"aliased_db", check.aliased_db},
+            {"taa_db", check.taa_db},
+            {"passes", check.passes()}};
+}
+
+void printCheck(const std::string& scene, const char* motion, const PictureCheck& check) {
+    std::printf("%s %s: frame %.1f dB, motion %.2f %%; one sample %.1f dB, resolved %.1f dB%s\n",
+                scene.c_str(), motion, check.raw_db, 100 * check.motion, check.aliased_db,
+                check.taa_db, check.passes() ? "" : "  FAILED");
+}
+
+Outcome<std::vector<BenchMotion>> parseMotions(const std::vector<std::string>& names) {
+    std::vector<BenchMotion> motions;
+    for (BenchMotion motion : kBenchMotions) {
+        if (names.empty() || std::find(names.begin(), names.end(), name(motion)) != names.end()) {
+            motions.push_back(motion);
+        }
+    }
+    return motions;
+}
+
+/// The whole run: scene, driver, then motion by motion.
+class Run {
+  public:
+    Run(const Options& options, const Gl& gl, Scene scene, command::Size size)
+        : options_(options), gl_(gl), scene_(std::move(scene)), size_(size) {}
+
+    Outcome<ExitCode> all(const std::vector<BenchMotion>& motions) {
+        if (options_.check) {
+            whole_ = scene_;
+        }
+        Result<GpuScene> drawer = GpuScene::make(gl_, scene_);
+        if (!drawer) {
+            return command::fileError(drawer.error().message);
+        }
+        Result<Passes> passes =
+            Passes::make(gl_, size_.width, size_.height, drawer->reversedDepth());
+        if (!passes) {
+            return command::fileError(passes.error().message);
+        }
+        restartMemoryPeak();
+        for (BenchMotion motion : motions) {
+            if (auto done = one(motion, *drawer, *passes); !done) {
+                return command::fileError(done.error().message);
+            }
+        }
+        if (!options_.png.empty()) {
+            command::Interruption interruption;
+            if (auto saved =
+                    command::savePng(options_.png, passes->readHistory().view(), interruption);
+                !saved) {
+                return tl::make_unexpected(saved.error());
+            }
+        }
+        if (options_.json) {
+            std::printf("%s\n", Json{{"results", results_}}.dump(2).c_str());
+        }
+        return good_ ? ExitCode::ok : ExitCode::differs;
+    }
+
+  private:
+    Result<void> one(BenchMotion motion, GpuScene& drawer, Passes& passes) {
+        const std::optional<Scene> moved = benchScene(scene_, motion, size_.height);
+        if (!moved) {
+            return {};
+        }
+        PeerFrames peer{gl_, *moved, drawer, passes, size_.width, size_.height};
+        Json json{
+            {"scene", options_.scene}, {"motion", name(motion)},      {"width", size_.width},
+            {"height", size_.height},  {"driver", options_.driver},   {"renderer", gl_.renderer},
+            {"version", gl_.version},  {"threads", options_.threads}, {"frames", options_.frames}};
+        if (options_.check) {
+            const std::optional<Scene> whole = benchScene(whole_, motion, size_.height);
+            const auto check = checkPictures(peer, *whole, kCheckedFrame, options_.threads);
+            if (!check) {
+                return tl::make_unexpected(check.error());
+            }
+            json["check"] = checkJson(*check);
+            good_ = good_ && check->passes();
+            if (!options_.json) {
+                printCheck(options_.scene, name(motion), *check);
+            }
+        } else {
+            const Result<PeerTimes> times = measure(peer, options_.frames);
+            if (!times) {
+                return tl::make_unexpected(times.error());
+            }
+            json.update(timesJson(*times));
+            if (!options_.json) {
+                printTimes(options_.scene, name(motion), json);
+            }
+        }
+        results_.push_back(std::move(json));
+        return {};
+    }
+
+    const Options& options_;
+    const Gl& gl_;
+    Scene scene_;
+    Scene whole_;  ///< with vertices and texels, to check against
+    command::Size size_;
+    Json results_ = Json::array();
+    bool good_ = true;
+};
+
+void addOptions(CLI::App& app, Options& o) {
+    app.add_option("SCENE", o.scene, "FILE.obj, FILE.json or builtin:NAME")->required();
+    app.add_option("--motion", o.motions, "still, pan and objects, default all")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"still", "pan", "objects"}));
+    app.add_option("--resolution", o.resolution, "Default 1920x1080");
+    app.add_option("--threads", o.threads, "Of the driver's rasterizer, default all cores")
+        ->check(CLI::Range(1, 16));
+    app.add_option("--frames", o.frames, "Measured for each figure, default 20")
+        ->check(CLI::Range(1, 2000));
+    app.add_option("--driver", o.driver, "llvmpipe (default) or swiftshader")
+        ->check(CLI::IsMember({"llvmpipe", "swiftshader"}));
+    app.add_option("--libraries", o.libraries,
+                   "Folder with libEGL.so of ANGLE for swiftshader, default /usr/lib/chromium");
+    app.add_option("--png", o.png, "Write the last resolved frame");
+    app.add_flag("--check", o.check, "Compare the pictures instead of taking times");
+    app.add_flag("--json", o.json, "Print one JSON object");
+}
+
+int report(const Failure& failure) {
+    std::fprintf(stderr, "bench_peer: %s\n", failure.message.c_str());
+    return int(failure.code);
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Draws Stillframe's scenes with OpenGL ES on the CPU and takes the time",
+                 "bench_peer");
+    Options options;
+    addOptions(app, options);
+    CLI11_PARSE(app, argc, argv);
+    const Outcome<command::Size> size = command::parseResolution(options.resolution);
+    if (!size) {
+        return report(size.error());
+    }
+    const auto motions = parseMotions(options.motions);
+    Outcome<Scene> scene = command::openScene(options.scene);
+    if (!scene) {
+        return report(scene.error());
+    }
+    command::frameForAspect(*scene, *size);
+    const Driver driver = options.driver == "llvmpipe" ? Driver::llvmpipe : Driver::swiftshader;
+    const Result<Gl> gl = openGl(driver, options.libraries, options.threads);
+    if (!gl) {
+        report({ExitCode::file_error, options.driver + " is not here: " + gl.error().message});
+        return kSkipped;
+    }
+    const Outcome<ExitCode> done = Run(options, *gl, std::move(*scene), *size).all(*motions);
+    return done ? int(*done) : report(done.error());
+}
+
+}  // namespace
+}  // namespace still::peer
+
+int main(int argc, char** argv) {
+    return still::peer::run(argc, argv);
+}

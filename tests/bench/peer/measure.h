@@ -1,0 +1,38 @@
+#pragma once
+// Times of the peer's passes, from a finished pipeline to a finished pipeline.
+
+#include <vector>
+
+#include "tests/bench/peer/gpu_scene.h"
+#include "tests/bench/peer/passes.h"
+
+namespace still::peer {
+
+/// Milliseconds, one entry a frame; `threads` of the driver at work.
+struct PeerTimes {
+    std::vector<double> depth_ms;    ///< depth alone
+    std::vector<double> lambert_ms;  ///< the G-buffer with Lambert × texture alone
+    std::vector<double> gbuffer_ms;  ///< the G-buffer
+    std::vector<double> taa_ms;      ///< the resolve
+    std::vector<double> output_ms;   ///< encoding to 8 bits
+    std::vector<double> frame_ms;    ///< G-buffer and resolve, finished only at the end of both
+    /// The same, all frames one after the other and finished only at the end: the mean.
+    double pipelined_ms = 0;
+};
+
+/// A scene under one motion, its drawer and its planes.
+struct PeerFrames {
+    const Gl& gl;
+    const Scene& scene;
+    GpuScene& drawer;
+    Passes& passes;
+    int width = 0, height = 0;
+
+    /// Draws frame `frame` and takes it into the history.
+    Result<void> render(int frame, Pass pass = Pass::gbuffer);
+};
+
+/// Takes the times of `frames` ≥ 1 frames after some that are not measured, kind by kind.
+Result<PeerTimes> measure(PeerFrames& peer, int frames);
+
+}  // namespace still::peer
