@@ -1,74 +1,18 @@
 #pragma once
-// What the stages hand to the SIMD kernels, and the table of kernels. Each kernel stands in
+// What the tile stages hand to the SIMD kernels, and the table of kernels. Each kernel stands in
 // NAME-inl.h (Highway) and NAME_reference.cpp (the plain scalar truth).
 
 #include <cstdint>
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
+#include "rasterizer/internal/geometry.h"
 #include "rasterizer/internal/matrix.h"
 #include "rasterizer/simd.h"
 
 namespace still::internal {
 
-// ---- vertex stage ----------------------------------------------------------------------------
-
-/// Why a vertex may need care. A triangle whose vertices share one of the frustum bits is outside.
-enum Outcode : uint8_t {
-    kOutNear = 1,  ///< in front of the near plane or w ≤ 0: no screen position
-    kOutLeft = 2,  ///< beyond the picture's edge by more than a pixel
-    kOutRight = 4,
-    kOutTop = 8,
-    kOutBottom = 16,
-    kOutFar = 32,
-    kOutGuard = 64,    ///< farther than the guard band: no screen position
-    kOutInvalid = 128  ///< not finite: the triangle is dropped
-};
-
-/// Half size of the guard band around the picture's centre, in pixels: edge lengths stay below 2^15
-/// pixels, so that edge functions fit 64 bits and, inside a tile, 32 bits.
-constexpr float kGuardBandPx = 16384.0f;
-
-/// Screen positions of one instance's vertices. x, y are relative to the picture's top left, still
-/// without jitter; all four are 0 where the outcode says there is no position.
-struct ScreenVertices {
-    int32_t* x_fx8;
-    int32_t* y_fx8;
-    float* z;  ///< reversed depth
-    float* inv_w;
-    uint8_t* outcode;
-};
-
-struct VertexJob {
-    const float *x, *y, *z;          ///< object space
-    MatrixF clip;                    ///< rows x, y, z' (reversed), w
-    float scale_x_fx8, scale_y_fx8;  ///< NDC → 1/256 pixel: 128·width, −128·height
-    int32_t centre_x_fx8, centre_y_fx8;
-    float frustum_x, frustum_y;  ///< 1 plus one pixel in NDC
-    float guard_fx8;
-    ScreenVertices out;
-};
-
 // ---- triangles -------------------------------------------------------------------------------
-
-/// A triangle ready for coverage. Positions are relative to the sample of pixel (0, 0): pixel (x,
-/// y) is sampled at (256·x, 256·y). Oriented so that its doubled area is positive with y down.
-struct SetupTriangle {
-    int32_t x_fx8[3], y_fx8[3];
-    float inv_w[3];
-    float z_min, z_max;
-    double z_origin, z_dx, z_dy;  ///< depth at pixel (0, 0) and per pixel
-    uint32_t triangle;            ///< in its mesh
-    int32_t clip;                 ///< index of its barycentrics, or −1 when it was not clipped
-    uint16_t surface;
-    uint8_t swapped;  ///< vertices 1 and 2 were exchanged to orient it
-    uint8_t alpha;    ///< its surface is alpha-tested or stochastic
-};
-
-/// Barycentric coordinates of a clipped triangle's vertices in the triangle it came from.
-struct ClipBarycentrics {
-    float b[3][3];
-};
 
 /// What shading needs of a triangle that is visible in a tile: b_k / w as planes over the tile,
 /// evaluated from an anchor pixel near the triangle so that slivers keep their precision. Kernels
@@ -141,10 +85,12 @@ constexpr int kBlockSize = 8;
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
 constexpr uint32_t kNothingVisible = 0xFFFFFFFFu;
 
+struct Chunk;
+
 /// One triangle of a tile, in submission order.
 struct TriangleRef {
-    const SetupTriangle* triangle;
-    const ClipBarycentrics* clips;  ///< of the chunk the triangle is in
+    const TileTriangle* record;
+    const Chunk* chunk;  ///< that the triangle is in
 };
 
 /// Where a tile's pixels go: first pixel of each plane, strides in elements.
@@ -175,7 +121,6 @@ struct TileContext {
 };
 
 struct RasterKernels {
-    void (*transformVertices)(const VertexJob& job, int begin, int end);
     /// Fills depth and visible; in forward mode also shades into the planes.
     void (*rasterizeTile)(TileContext& tile);
     /// Shades every pixel of the tile once, by `visible`.

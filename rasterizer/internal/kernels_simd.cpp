@@ -18,7 +18,7 @@
 
 // In pipeline order: each rests on those before.
 // clang-format off
-#include "rasterizer/internal/vertex-inl.h"
+#include "rasterizer/internal/lanes-inl.h"
 #include "rasterizer/internal/surface-inl.h"
 #include "rasterizer/internal/sampler-inl.h"
 #include "rasterizer/internal/parallax-inl.h"
@@ -31,7 +31,7 @@ namespace still::internal {
 namespace HWY_NAMESPACE {
 
 const RasterKernels* kernelTable() {
-    static constexpr RasterKernels kKernels{transformVertices, rasterizeTile, shadeTile};
+    static constexpr RasterKernels kKernels{rasterizeTile, shadeTile};
     return &kKernels;
 }
 

@@ -7,6 +7,17 @@
 
 namespace still::internal {
 
+SetupTriangle setupOf(const TriangleRef& ref, int tile_x0, int tile_y0) {
+    const Chunk& chunk = *ref.chunk;
+    const uint32_t number = ref.record->id & kTriangleMask;
+    if ((ref.record->id & kWide) != 0) {
+        return chunk.wide[number];
+    }
+    SetupTriangle t = expand(*ref.record, tile_x0, tile_y0);
+    t.triangle = chunk.first + number;
+    return t;
+}
+
 TilePlane makeTilePlane(const SetupTriangle& t, const TileContext& tile) {
     const PixelBox box = pixelBox(t, tile.x0 + tile.width, tile.y0 + tile.height);
     TilePlane p;
@@ -14,11 +25,12 @@ TilePlane makeTilePlane(const SetupTriangle& t, const TileContext& tile) {
     p.y0 = std::max(box.y0 - tile.y0, 0);
     p.x1 = box.x1 - tile.x0;
     p.y1 = box.y1 - tile.y0;
-    p.origin = float(t.z_origin + (t.z_dx * (tile.x0 + p.x0) + t.z_dy * (tile.y0 + p.y0)));
-    p.dx = float(t.z_dx);
-    p.dy = float(t.z_dy);
-    p.min = t.z_min;
-    p.max = t.z_max;
+    const DepthPlane z = depthPlane(t);
+    p.origin = float(z.origin + (z.dx * (tile.x0 + p.x0) + z.dy * (tile.y0 + p.y0)));
+    p.dx = float(z.dx);
+    p.dy = float(z.dy);
+    p.min = std::min({t.z[0], t.z[1], t.z[2]});
+    p.max = std::max({t.z[0], t.z[1], t.z[2]});
     return p;
 }
 
@@ -53,8 +65,15 @@ float shadingFlip(const Surface& s, const InstanceSetup& instance, const uint32_
 
 void makeShadeTriangle(const FrameTables& frame, const TriangleRef& ref, int tile_x0, int tile_y0,
                        ShadeTriangle& out) {
-    const SetupTriangle& t = *ref.triangle;
-    const Surface& s = frame.surfaces[t.surface];
+    SetupTriangle t = setupOf(ref, tile_x0, tile_y0);
+    const Surface& s = frame.surfaces[ref.chunk->surface];
+    const int order[3] = {0, t.swapped != 0 ? 2 : 1, t.swapped != 0 ? 1 : 2};
+    const uint32_t* index = s.indices + size_t(t.triangle) * 3;
+    if ((ref.record->id & kWide) == 0) {
+        for (int k = 0; k < 3; ++k) {
+            t.inv_w[k] = ref.chunk->vertices[index[order[k]]].inv_w;
+        }
+    }
     const int anchor_x =
         std::max(tile_x0, (std::min({t.x_fx8[0], t.x_fx8[1], t.x_fx8[2]}) + 255) >> 8);
     const int anchor_y =
@@ -78,14 +97,13 @@ void makeShadeTriangle(const FrameTables& frame, const TriangleRef& ref, int til
         dx[k] *= scale;
         dy[k] *= scale;
     }
-    const int order[3] = {0, t.swapped != 0 ? 2 : 1, t.swapped != 0 ? 1 : 2};
-    const uint32_t* index = s.indices + size_t(t.triangle) * 3;
     for (int k = 0; k < 3; ++k) {
         double v = 0, vx = 0, vy = 0;
         for (int c = 0; c < 3; ++c) {
             // Setup corner c is source corner order[c], or a clipped corner between all three.
-            const double weight = t.clip >= 0 ? double(ref.clips[t.clip].b[order[c]][k])
-                                              : (order[c] == k ? 1.0 : 0.0);
+            const double weight = t.clip >= 0
+                                      ? double(ref.chunk->clips[size_t(t.clip)].b[order[c]][k])
+                                      : (order[c] == k ? 1.0 : 0.0);
             v += value[c] * weight;
             vx += dx[c] * weight;
             vy += dy[c] * weight;
@@ -97,21 +115,23 @@ void makeShadeTriangle(const FrameTables& frame, const TriangleRef& ref, int til
     }
     out.anchor_x = float(anchor_x - tile_x0);
     out.anchor_y = float(anchor_y - tile_y0);
-    out.surface = t.surface;
+    out.surface = ref.chunk->surface;
     // With y down, the triangles that had to be swapped run counter-clockwise on the screen.
     out.flip = shadingFlip(s, frame.instances[s.instance], index, t.swapped != 0);
 }
 
 namespace {
 
-void collectRefs(const std::vector<Chunk>& chunks, size_t chunk_count, int tx, int ty,
-                 std::vector<TriangleRef>& refs) {
+void collectRefs(const FrameBins& bins, int tx, int ty, std::vector<TriangleRef>& refs) {
     refs.clear();
-    for (size_t i = 0; i < chunk_count; ++i) {
-        const Chunk& chunk = chunks[i];
-        const Chunk::Range range = chunk.itemsOf(tx, ty);
-        for (const uint32_t* item = range.begin; item != range.end; ++item) {
-            refs.push_back({&chunk.triangles[*item], chunk.clips.data()});
+    for (size_t i = 0; i < bins.count; ++i) {
+        if (!bins.rects[i].holds(tx, ty)) {
+            continue;
+        }
+        const Chunk& chunk = bins.chunks[i];
+        const Chunk::Range range = chunk.recordsOf(tx, ty);
+        for (const TileTriangle* record = range.begin; record != range.end; ++record) {
+            refs.push_back({record, &chunk});
         }
     }
 }
@@ -127,7 +147,7 @@ class TileRenderer {
 
     void prepareBeforeVisibility() {
         for (uint32_t ref = 0; ref < tile_.ref_count; ++ref) {
-            if (tile_.forward || tile_.refs[ref].triangle->alpha != 0) {
+            if (tile_.forward || tile_.refs[ref].chunk->alpha) {
                 prepare(ref);
             }
         }
@@ -141,7 +161,7 @@ class TileRenderer {
                 scratch_.counters.pixels_shaded += ref != kNothingVisible ? 1 : 0;
                 if (ref != last && ref != kNothingVisible) {
                     prepare(ref);
-                    tile_.features |= setup_.surfaces[tile_.refs[ref].triangle->surface].features;
+                    tile_.features |= setup_.surfaces[tile_.refs[ref].chunk->surface].features;
                 }
                 last = ref;
             }
@@ -193,9 +213,8 @@ void writeStillMotion(const TilePlanes& planes, int width, int height, uint8_t& 
 
 }  // namespace
 
-void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
-                const RasterSettings& settings, int tx, int ty, GBuffer& out,
-                TileScratch& scratch) {
+void renderTile(const FrameSetup& setup, const FrameBins& bins, const RasterSettings& settings,
+                int tx, int ty, GBuffer& out, TileScratch& scratch) {
     const auto now = [&] { return settings.ticks != nullptr ? settings.ticks() : 0; };
     const uint64_t start = now();
     const FrameTables& frame = setup.tables;
@@ -211,7 +230,7 @@ void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_
     tile.planes = planesAt(out, tile.x0, tile.y0);
     tile.reproject = tileReprojection(frame, tile.x0, tile.y0);
 
-    collectRefs(chunks, chunk_count, tx, ty, scratch.refs);
+    collectRefs(bins, tx, ty, scratch.refs);
     tile.refs = scratch.refs.data();
     tile.ref_count = uint32_t(scratch.refs.size());
 

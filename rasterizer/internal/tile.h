@@ -24,6 +24,9 @@ struct TilePlane {
     }
 };
 
+/// The triangle with the picture's coordinates.
+SetupTriangle setupOf(const TriangleRef& ref, int tile_x0, int tile_y0);
+
 TilePlane makeTilePlane(const SetupTriangle& t, const TileContext& tile);
 
 /// Fills the record for shading `ref` in a tile that starts at pixel (tile_x0, tile_y0).
@@ -41,7 +44,7 @@ struct TileScratch {
 };
 
 /// Renders tile (tx, ty).
-void renderTile(const FrameSetup& setup, const std::vector<Chunk>& chunks, size_t chunk_count,
-                const RasterSettings& settings, int tx, int ty, GBuffer& out, TileScratch& scratch);
+void renderTile(const FrameSetup& setup, const FrameBins& bins, const RasterSettings& settings,
+                int tx, int ty, GBuffer& out, TileScratch& scratch);
 
 }  // namespace still::internal

@@ -19,38 +19,25 @@ PixelBox pixelBox(const SetupTriangle& t, int width, int height) {
 
 namespace {
 
-/// The plane through three (x, y, z) in double: slivers and planes from near to far keep their
-/// precision, and each tile takes only the value near itself to float.
-void depthPlane(const float z[3], int64_t area2, SetupTriangle& t) {
-    const double x1 = t.x_fx8[1] - t.x_fx8[0], y1 = t.y_fx8[1] - t.y_fx8[0];
-    const double x2 = t.x_fx8[2] - t.x_fx8[0], y2 = t.y_fx8[2] - t.y_fx8[0];
-    const double z0 = double(z[0]);
-    const double z1 = double(z[1]) - z0, z2 = double(z[2]) - z0;
-    const double per_pixel = double(kSubpixelOne) / double(area2);
-    t.z_dx = (z1 * y2 - z2 * y1) * per_pixel;
-    t.z_dy = (z2 * x1 - z1 * x2) * per_pixel;
-    const double px = t.x_fx8[0] / double(kSubpixelOne), py = t.y_fx8[0] / double(kSubpixelOne);
-    t.z_origin = z0 - (t.z_dx * px + t.z_dy * py);
-    t.z_min = std::min({z[0], z[1], z[2]});
-    t.z_max = std::max({z[0], z[1], z[2]});
+int64_t doubledArea(const SetupTriangle& t) {
+    return int64_t{t.x_fx8[1] - t.x_fx8[0]} * (t.y_fx8[2] - t.y_fx8[0]) -
+           int64_t{t.x_fx8[2] - t.x_fx8[0]} * (t.y_fx8[1] - t.y_fx8[0]);
 }
 
 }  // namespace
 
 bool setupTriangle(const ScreenVertex v[3], int sample_x_fx8, int sample_y_fx8, int width,
                    int height, SetupTriangle& out) {
-    float z[3];
     for (int k = 0; k < 3; ++k) {
         out.x_fx8[k] = v[k].x_fx8 - sample_x_fx8;
         out.y_fx8[k] = v[k].y_fx8 - sample_y_fx8;
         out.inv_w[k] = v[k].inv_w;
-        z[k] = v[k].z;
+        out.z[k] = v[k].z;
     }
     if (pixelBox(out, width, height).empty()) {
         return false;
     }
-    int64_t area2 = int64_t{out.x_fx8[1] - out.x_fx8[0]} * (out.y_fx8[2] - out.y_fx8[0]) -
-                    int64_t{out.x_fx8[2] - out.x_fx8[0]} * (out.y_fx8[1] - out.y_fx8[0]);
+    const int64_t area2 = doubledArea(out);
     if (area2 == 0) {
         return false;
     }
@@ -59,11 +46,37 @@ bool setupTriangle(const ScreenVertex v[3], int sample_x_fx8, int sample_y_fx8, 
         std::swap(out.x_fx8[1], out.x_fx8[2]);
         std::swap(out.y_fx8[1], out.y_fx8[2]);
         std::swap(out.inv_w[1], out.inv_w[2]);
-        std::swap(z[1], z[2]);
-        area2 = -area2;
+        std::swap(out.z[1], out.z[2]);
     }
-    depthPlane(z, area2, out);
     return true;
+}
+
+SetupTriangle expand(const TileTriangle& record, int tile_x0, int tile_y0) {
+    SetupTriangle t;
+    for (int k = 0; k < 3; ++k) {
+        t.x_fx8[k] = record.corner[k].x_fx8 + tile_x0 * kSubpixelOne;
+        t.y_fx8[k] = record.corner[k].y_fx8 + tile_y0 * kSubpixelOne;
+        t.z[k] = record.z[k];
+        t.inv_w[k] = 0.0f;
+    }
+    t.triangle = record.id & kTriangleMask;
+    t.clip = -1;
+    t.swapped = (record.id & kSwapped) != 0;
+    return t;
+}
+
+DepthPlane depthPlane(const SetupTriangle& t) {
+    const double x1 = t.x_fx8[1] - t.x_fx8[0], y1 = t.y_fx8[1] - t.y_fx8[0];
+    const double x2 = t.x_fx8[2] - t.x_fx8[0], y2 = t.y_fx8[2] - t.y_fx8[0];
+    const double z0 = double(t.z[0]);
+    const double z1 = double(t.z[1]) - z0, z2 = double(t.z[2]) - z0;
+    const double per_pixel = double(kSubpixelOne) / double(doubledArea(t));
+    DepthPlane p;
+    p.dx = (z1 * y2 - z2 * y1) * per_pixel;
+    p.dy = (z2 * x1 - z1 * x2) * per_pixel;
+    const double px = t.x_fx8[0] / double(kSubpixelOne), py = t.y_fx8[0] / double(kSubpixelOne);
+    p.origin = z0 - (p.dx * px + p.dy * py);
+    return p;
 }
 
 Edge makeEdge(const SetupTriangle& t, int k, int origin_x, int origin_y) {

@@ -1,5 +1,5 @@
 // Vertex stage, one vertex per lane; see vertex_reference.cpp for the truth.
-// Included once per target by kernels_simd.cpp.
+// Included once per target by geometry_simd.cpp.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
@@ -12,16 +12,9 @@ V transformRow(D d, const float m[4], V x, V y, V z) {
                    hn::Add(hn::Mul(hn::Set(d, m[2]), z), hn::Set(d, m[3])));
 }
 
-/// floor(v + 0.5) as integers, as roundToInt().
-template <class D, class V = hn::Vec<D>>
-hn::Vec<hn::RebindToSigned<D>> roundLanes(D d, V v) {
-    return hn::ConvertTo(hn::RebindToSigned<D>(), hn::Floor(hn::Add(v, hn::Set(d, 0.5f))));
-}
-
 template <class D>
 void transformGroup(D d, const VertexJob& job, int i) {
     const hn::RebindToSigned<D> di;
-    const hn::Rebind<uint8_t, D> du8;
     using V = hn::Vec<D>;
     const V px = hn::LoadU(d, job.x + i);
     const V py = hn::LoadU(d, job.y + i);
@@ -60,28 +53,28 @@ void transformGroup(D d, const VertexJob& job, int i) {
     code = hn::Or(code, bit(hn::And(ok_div, hn::Not(guard_ok)), kOutGuard));
     code = hn::IfThenElse(hn::RebindMask(di, finite), code, hn::Set(di, int32_t{kOutInvalid}));
 
+    // Where there is no position, x says so and y says why.
     const auto valid_i = hn::RebindMask(di, valid);
     const auto x_fx8 =
         hn::Add(roundLanes(d, hn::IfThenElseZero(valid, sx)), hn::Set(di, job.centre_x_fx8));
     const auto y_fx8 =
         hn::Add(roundLanes(d, hn::IfThenElseZero(valid, sy)), hn::Set(di, job.centre_y_fx8));
-    hn::StoreU(hn::IfThenElseZero(valid_i, x_fx8), di, job.out.x_fx8 + i);
-    hn::StoreU(hn::IfThenElseZero(valid_i, y_fx8), di, job.out.y_fx8 + i);
-    hn::StoreU(hn::IfThenElseZero(valid, hn::Mul(z, r)), d, job.out.z + i);
-    hn::StoreU(hn::IfThenElseZero(valid, r), d, job.out.inv_w + i);
-    hn::StoreU(hn::DemoteTo(du8, code), du8, job.out.outcode + i);
+    const auto x_word = hn::IfThenElse(valid_i, x_fx8, hn::Set(di, kNoPosition));
+    const auto y_word = hn::IfThenElse(valid_i, y_fx8, code);
+    hn::StoreInterleaved4(x_word, y_word, hn::BitCast(di, hn::IfThenElseZero(valid, hn::Mul(z, r))),
+                          hn::BitCast(di, hn::IfThenElseZero(valid, r)), di,
+                          reinterpret_cast<int32_t*>(job.out + i));
 }
 
 void transformVertices(const VertexJob& job, int begin, int end) {
-    const hn::CappedTag<float, 8> d;
+    const hn::CappedTag<float, 16> d;
     const int lanes = int(hn::Lanes(d));
     int i = begin;
     for (; i + lanes <= end; i += lanes) {
         transformGroup(d, job, i);
     }
-    const hn::CappedTag<float, 1> d1;
     for (; i < end; ++i) {
-        transformGroup(d1, job, i);
+        job.out[i] = projectVertex(job, transformVertex(job.clip, job.x[i], job.y[i], job.z[i]));
     }
 }
 

@@ -27,35 +27,35 @@ ClipVertex transformVertex(const MatrixF& clip, float x, float y, float z) {
 }
 
 ScreenVertex projectVertex(const VertexJob& job, const ClipVertex& v) {
-    ScreenVertex out{};
+    const auto nowhere = [](int outcode) { return ScreenVertex{kNoPosition, outcode, 0.0f, 0.0f}; };
     if (!(finite(v.x) && finite(v.y) && finite(v.z) && finite(v.w))) {
-        out.outcode = kOutInvalid;
-        return out;
+        return nowhere(kOutInvalid);
     }
     const float fx = job.frustum_x * v.w;
     const float fy = job.frustum_y * v.w;
     const bool near_ok = v.z <= v.w && v.w > 1e-20f;
-    uint8_t code = near_ok ? 0 : kOutNear;
+    int code = near_ok ? 0 : kOutNear;
     code |= v.x < -fx ? kOutLeft : 0;
     code |= v.x > fx ? kOutRight : 0;
     code |= v.y > fy ? kOutTop : 0;
     code |= v.y < -fy ? kOutBottom : 0;
     code |= v.z < 0.0f ? kOutFar : 0;
-    if (near_ok) {
-        const float r = 1.0f / v.w;
-        const float sx = (v.x * r) * job.scale_x_fx8;
-        const float sy = (v.y * r) * job.scale_y_fx8;
-        if (std::fabs(sx) <= job.guard_fx8 && std::fabs(sy) <= job.guard_fx8) {
-            out.x_fx8 = roundToInt(sx) + job.centre_x_fx8;
-            out.y_fx8 = roundToInt(sy) + job.centre_y_fx8;
-            out.z = v.z * r;
-            out.inv_w = r;
-        } else {
-            code |= kOutGuard;
-        }
+    if (!near_ok) {
+        return nowhere(code);
     }
-    out.outcode = code;
-    return out;
+    const float r = 1.0f / v.w;
+    const float sx = (v.x * r) * job.scale_x_fx8;
+    const float sy = (v.y * r) * job.scale_y_fx8;
+    if (!(std::fabs(sx) <= job.guard_fx8 && std::fabs(sy) <= job.guard_fx8)) {
+        return nowhere(code | kOutGuard);
+    }
+    return {roundToInt(sx) + job.centre_x_fx8, roundToInt(sy) + job.centre_y_fx8, v.z * r, r};
+}
+
+void transformVerticesReference(const VertexJob& job, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+        job.out[i] = projectVertex(job, transformVertex(job.clip, job.x[i], job.y[i], job.z[i]));
+    }
 }
 
 }  // namespace still::internal

@@ -231,10 +231,11 @@ void rasterizeTile(TileContext& tile) {
         shadeTileLevel<0>(tile);  // all background
     }
     for (uint32_t ref = 0; ref < tile.ref_count; ++ref) {
-        const SetupTriangle& t = *tile.refs[ref].triangle;
+        const SetupTriangle t = setupOf(tile.refs[ref], tile.x0, tile.y0);
         TileEdges edges;
         if (tileEdges(t, tile, edges)) {
-            TriangleInTile{tile, ref, t.alpha != 0, makeTilePlane(t, tile), edges, bounds}
+            TriangleInTile{tile,  ref,   tile.refs[ref].chunk->alpha, makeTilePlane(t, tile),
+                           edges, bounds}
                 .allBlocks();
         }
     }

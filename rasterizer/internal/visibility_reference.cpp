@@ -6,23 +6,10 @@
 #include "rasterizer/internal/shade_reference.h"
 #include "rasterizer/internal/tile.h"
 #include "rasterizer/internal/triangle_setup.h"
-#include "rasterizer/internal/vertex_reference.h"
 
 namespace still::internal {
 
 namespace {
-
-void transformVerticesReference(const VertexJob& job, int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-        const ScreenVertex v =
-            projectVertex(job, transformVertex(job.clip, job.x[i], job.y[i], job.z[i]));
-        job.out.x_fx8[i] = v.x_fx8;
-        job.out.y_fx8[i] = v.y_fx8;
-        job.out.z[i] = v.z;
-        job.out.inv_w[i] = v.inv_w;
-        job.out.outcode[i] = v.outcode;
-    }
-}
 
 void clearTile(TileContext& tile) {
     std::fill_n(tile.depth, kTilePixels, 0.0f);
@@ -41,7 +28,7 @@ void shadeTileReference(const TileContext& tile) {
 }
 
 void rasterizeTriangle(TileContext& tile, uint32_t ref) {
-    const SetupTriangle& t = *tile.refs[ref].triangle;
+    const SetupTriangle t = setupOf(tile.refs[ref], tile.x0, tile.y0);
     const TilePlane plane = makeTilePlane(t, tile);
     Edge edges[3];
     for (int k = 0; k < 3; ++k) {
@@ -55,7 +42,7 @@ void rasterizeTriangle(TileContext& tile, uint32_t ref) {
             const int i = y * kTileSize + x;
             const float z = plane.at(x, y);
             if (!covered || !(z > tile.depth[i]) ||
-                (t.alpha != 0 && !alphaPasses(tile, tile.shade[ref], x, y))) {
+                (tile.refs[ref].chunk->alpha && !alphaPasses(tile, tile.shade[ref], x, y))) {
                 continue;
             }
             tile.depth[i] = z;
@@ -80,8 +67,7 @@ void rasterizeTileReference(TileContext& tile) {
 }  // namespace
 
 const RasterKernels& referenceKernels() {
-    static constexpr RasterKernels kKernels{transformVerticesReference, rasterizeTileReference,
-                                            shadeTileReference};
+    static constexpr RasterKernels kKernels{rasterizeTileReference, shadeTileReference};
     return kKernels;
 }
 

@@ -78,10 +78,14 @@ TEST_CASE("simd: every available target has a full table of kernels", "[simd]") 
     for (SimdTarget target : availableSimdTargets()) {
         CAPTURE(name(target));
         const internal::RasterKernels& kernels = internal::kernelsFor(target);
-        CHECK(kernels.transformVertices != nullptr);
         CHECK(kernels.rasterizeTile != nullptr);
         CHECK(kernels.shadeTile != nullptr);
         const internal::RasterKernels& scalar = internal::referenceKernels();
         CHECK((target == SimdTarget::scalar) == (kernels.shadeTile == scalar.shadeTile));
+        const internal::GeometryKernels& geometry = internal::geometryFor(target);
+        CHECK(geometry.transformVertices != nullptr);
+        CHECK(geometry.cullTriangles != nullptr);
+        CHECK((target == SimdTarget::scalar) ==
+              (geometry.transformVertices == internal::referenceGeometry().transformVertices));
     }
 }
