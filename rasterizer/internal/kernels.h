@@ -85,12 +85,15 @@ constexpr int kBlockSize = 8;
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
 constexpr uint32_t kNothingVisible = 0xFFFFFFFFu;
 
+/// Kernels may read and write this many elements behind a tile's planes and triangles.
+constexpr int kTileSlack = 16;
+
 struct Chunk;
 
-/// One triangle of a tile, in submission order.
-struct TriangleRef {
-    const TileTriangle* record;
-    const Chunk* chunk;  ///< that the triangle is in
+/// Consecutive triangles of a tile that come from one chunk.
+struct TileRun {
+    uint32_t begin;  ///< its first triangle's place in the tile; the next run's is the end
+    const Chunk* chunk;
 };
 
 /// Where a tile's pixels go: first pixel of each plane, strides in elements.
@@ -106,16 +109,21 @@ struct TileContext {
     const FrameTables* frame = nullptr;
     int x0 = 0, y0 = 0;  ///< of the tile in the picture
     int width = 0, height = 0;
-    const TriangleRef* refs = nullptr;
-    uint32_t ref_count = 0;
+    const TileTriangle* triangles = nullptr;  ///< in submission order
+    uint32_t triangle_count = 0;
+    const TileRun* runs = nullptr;  ///< in order; behind the last one is one that begins at the end
+    uint32_t run_count = 0;
     bool forward = false;
     float* depth = nullptr;
-    uint32_t* visible = nullptr;  ///< index into refs (and shade), or kNothingVisible
-    /// One per ref; filled where it is read: before visibility for alpha (and in forward mode for
-    /// all), after it for visible triangles.
+    uint32_t* visible = nullptr;  ///< index into triangles (and shade), or kNothingVisible
+    /// One per triangle and a spare one; filled where `shade_ready` is 1: during visibility when
+    /// alpha is looked up, after it for all that are visible.
     ShadeTriangle* shade = nullptr;
-    uint8_t features = 0;                            ///< union of the surfaces that may be visible
+    uint8_t* shade_ready = nullptr;
+    uint8_t* seen = nullptr;  ///< scratch of prepareShading: one per triangle and one more
+    uint8_t features = 0;     ///< union of the surfaces that may be visible
     uint32_t blocks_hidden = 0, blocks_outside = 0;  ///< counted by rasterizeTile
+    uint32_t pixels_shaded = 0;                      ///< counted by prepareShading
     TilePlanes planes{};
     MatrixF reproject{};  ///< tile-local: (x, y, z, 1) → (x_local·w, y_local·w, z', w) before
 };
@@ -123,6 +131,8 @@ struct TileContext {
 struct RasterKernels {
     /// Fills depth and visible; in forward mode also shades into the planes.
     void (*rasterizeTile)(TileContext& tile);
+    /// Fills what shadeTile reads of the visible triangles, and their features.
+    void (*prepareShading)(TileContext& tile);
     /// Shades every pixel of the tile once, by `visible`.
     void (*shadeTile)(const TileContext& tile);
 };

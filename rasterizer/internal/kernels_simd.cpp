@@ -10,8 +10,11 @@
 // foreach_target must come before highway.h.
 #include <hwy/highway.h>
 
+#include <bit>
+
 #include "rasterizer/fixed.h"
 #include "rasterizer/internal/dispatch.h"
+#include "rasterizer/internal/shade_setup.h"
 #include "rasterizer/internal/shading_constants.h"
 #include "rasterizer/internal/tile.h"
 #include "rasterizer/internal/triangle_setup.h"
@@ -23,7 +26,9 @@
 #include "rasterizer/internal/sampler-inl.h"
 #include "rasterizer/internal/parallax-inl.h"
 #include "rasterizer/internal/shade-inl.h"
+#include "rasterizer/internal/cover-inl.h"
 #include "rasterizer/internal/visibility-inl.h"
+#include "rasterizer/internal/shade_setup-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -31,7 +36,7 @@ namespace still::internal {
 namespace HWY_NAMESPACE {
 
 const RasterKernels* kernelTable() {
-    static constexpr RasterKernels kKernels{rasterizeTile, shadeTile};
+    static constexpr RasterKernels kKernels{rasterizeTile, prepareShading, shadeTile};
     return &kKernels;
 }
 

@@ -24,22 +24,19 @@ struct TilePlane {
     }
 };
 
-/// The triangle with the picture's coordinates.
-SetupTriangle setupOf(const TriangleRef& ref, int tile_x0, int tile_y0);
+/// The triangle with the picture's coordinates; of narrow ones inv_w is left out.
+SetupTriangle setupOf(const TileTriangle& record, const Chunk& chunk, int tile_x0, int tile_y0);
 
 TilePlane makeTilePlane(const SetupTriangle& t, const TileContext& tile);
 
-/// Fills the record for shading `ref` in a tile that starts at pixel (tile_x0, tile_y0).
-void makeShadeTriangle(const FrameTables& frame, const TriangleRef& ref, int tile_x0, int tile_y0,
-                       ShadeTriangle& out);
-
 /// Scratch of one worker.
 struct TileScratch {
-    std::vector<TriangleRef> refs;
-    std::vector<ShadeTriangle> shade;
-    std::vector<uint8_t> shade_ready;
-    alignas(64) float depth[kTilePixels];
-    alignas(64) uint32_t visible[kTilePixels];
+    std::vector<TileRun> runs;
+    Buffer<TileTriangle> triangles;
+    Buffer<ShadeTriangle> shade;
+    Buffer<uint8_t> shade_ready, seen;
+    alignas(64) float depth[kTilePixels + kTileSlack];
+    alignas(64) uint32_t visible[kTilePixels + kTileSlack];
     RasterCounters counters;  ///< what this worker adds to the frame's
 };
 

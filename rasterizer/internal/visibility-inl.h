@@ -1,9 +1,11 @@
-// Coverage and visibility of a tile; see visibility_reference.cpp for the truth.
-// Included once per target by kernels_simd.cpp.
+// Visibility of a tile: which triangle is nearest at each sample; see visibility_reference.cpp for
+// the truth. Included once per target by kernels_simd.cpp.
 //
-// A triangle visits the 8 × 8 blocks of its bounds in the tile. A block is skipped when an edge has
-// it outside or when the triangle's nearest depth in it is behind everything that is there; edges
-// that have it inside are not tested again. What is left goes row by row, 8 samples at a time:
+// Triangles are set up many at once (cover-inl.h), then drawn one after the other by the size of
+// their boxes: up to 4 × 4 samples by the mask of covered ones; up to 16 × 16 row by row; the rest
+// by the 8 × 8 blocks of the tile, of which a row is tested at once. A block is left out when an
+// edge has it outside or when the triangle's nearest depth in it is behind everything that is
+// there; where all edges have it inside they are not tested again:
 //
 //      tile 64 × 64               block 8 × 8
 //    ┌──┬──┬──┬──┬┄             ┌────────────┐   e0 | e1 | e2 ≥ 0  → covered
@@ -17,14 +19,24 @@ namespace still::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Edge values as 32 bits, relative to the tile: exact, because edges that keep one sign all over
-/// the tile are replaced by a constant first.
+#if HWY_TARGET == HWY_SCALAR
+
+void rasterizeTile(TileContext& tile) {
+    referenceKernels().rasterizeTile(tile);
+}
+
+#else
+
+/// Edges as 32 bits from the sample (x, y) of the tile. Exact: edges that keep one sign all over
+/// the tile are replaced by a constant where that is needed.
 struct TileEdges {
+    int x, y;
     int32_t c[3], a[3], b[3];
 };
 
 /// False when the whole tile is outside of an edge.
 inline bool tileEdges(const SetupTriangle& t, const TileContext& tile, TileEdges& out) {
+    out.x = out.y = 0;
     for (int k = 0; k < 3; ++k) {
         const Edge e = makeEdge(t, k, tile.x0, tile.y0);
         const int64_t high = int64_t{std::max(e.a, 0)} + std::max(e.b, 0);
@@ -68,64 +80,99 @@ HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangl
 }
 
 /// Lower bounds of the depths in each block. Every triangle raises depths, so an old bound stays a
-/// bound; it is worth renewing when several triangles have drawn into the block since.
+/// bound; it is worth renewing when as many samples as a block has have been drawn since.
 struct BlockBounds {
-    float min[kBlocksPerTile * kBlocksPerTile] = {};
-    uint8_t draws[kBlocksPerTile * kBlocksPerTile] = {};
+    alignas(64) float min[kBlocksPerTile * kBlocksPerTile] = {};
+    uint32_t drawn[kBlocksPerTile * kBlocksPerTile] = {};
 };
-constexpr int kDrawsBeforeRenewal = 4;
+constexpr uint32_t kDrawnBeforeRenewal = kBlockSize * kBlockSize;
+constexpr int kLastInBlock = kBlockSize - 1;
 
-/// One triangle in one tile.
+HWY_INLINE uint32_t maskBits(hn::Mask<ITag> mask) {
+    uint8_t bits[8];
+    hn::StoreMaskBits(ITag(), mask, bits);
+    return bits[0];
+}
+
+HWY_INLINE int blockAt(int x, int y) {
+    return y / kBlockSize * kBlocksPerTile + x / kBlockSize;
+}
+
+inline void renewBound(const TileContext& tile, BlockBounds& bounds, int b) {
+    const float* depth =
+        tile.depth + b / kBlocksPerTile * kBlockSize * kTileSize + b % kBlocksPerTile * kBlockSize;
+    FVec lowest = splat(3.0e38f);
+    for (int y = 0; y < kBlockSize; ++y) {
+        for (int x = 0; x < kBlockSize; x += int(hn::Lanes(FTag()))) {
+            lowest = hn::Min(lowest, hn::Load(FTag(), depth + y * kTileSize + x));
+        }
+    }
+    bounds.min[b] = hn::GetLane(hn::MinOfLanes(FTag(), lowest));
+    bounds.drawn[b] = 0;
+}
+
+/// One triangle in one tile. kTested: each sample that passes is tested for alpha or shaded, too.
+template <bool kTested>
 struct TriangleInTile {
     TileContext& tile;
-    const uint32_t ref;
-    const bool alpha;
+    BlockBounds& bounds;
+    const uint32_t index;
+    const Chunk& chunk;
     const TilePlane plane;
     const TileEdges& edges;
-    BlockBounds& bounds;
 
     /// Tests the samples of `covered` from (x, y); returns the depths that stand there afterwards.
-    HWY_INLINE FVec testLanes(int x, int y, FVec z, hn::Mask<ITag> covered) const {
+    HWY_INLINE FVec testLanes(int x, int y, FVec z, FMask covered) const {
         const int i = y * kTileSize + x;
-        const FVec old = hn::Load(FTag(), tile.depth + i);
-        FMask pass = hn::And(hn::RebindMask(FTag(), covered), hn::Gt(z, old));
-        if (alpha && !hn::AllFalse(FTag(), pass)) {
-            pass = hn::And(pass, alphaMask(tile, tile.shade[ref], x, y));
-        }
+        const FVec old = hn::LoadU(FTag(), tile.depth + i);
+        FMask pass = hn::And(covered, hn::Gt(z, old));
         if (hn::AllFalse(FTag(), pass)) {
             return old;
         }
+        if constexpr (kTested) {
+            prepareTriangle(tile, chunk, index);
+            if (chunk.alpha) {
+                pass = hn::And(pass, alphaMask(tile, tile.shade[index], x, y));
+                if (hn::AllFalse(FTag(), pass)) {
+                    return old;
+                }
+            }
+        }
         const FVec now = hn::IfThenElse(pass, z, old);
-        hn::Store(now, FTag(), tile.depth + i);
+        hn::StoreU(now, FTag(), tile.depth + i);
         uint32_t* visible = tile.visible + i;
-        hn::Store(hn::IfThenElse(hn::RebindMask(UTag(), pass), hn::Set(UTag(), ref),
-                                 hn::Load(UTag(), visible)),
-                  UTag(), visible);
-        if (tile.forward) {
-            shadeFragments(tile, ref, x, y, now, pass);
+        hn::StoreU(hn::IfThenElse(hn::RebindMask(UTag(), pass), hn::Set(UTag(), index),
+                                  hn::LoadU(UTag(), visible)),
+                   UTag(), visible);
+        if constexpr (kTested) {
+            if (tile.forward) {
+                shadeFragments(tile, index, x, y, now, pass);
+            }
         }
         return now;
     }
 
-    /// The rows y0 … y1 of a group of columns from x; `corner` are edge values at (x, y0). Returns
-    /// the lane-wise smallest depths.
+    /// The rows y0 … y1 of a group of columns from x. Returns the lane-wise smallest depths.
     template <bool kAllInside>
-    HWY_INLINE FVec columns(int x, int y0, int y1, const int32_t corner[3]) const {
+    HWY_INLINE FVec columns(int x, int y0, int y1) const {
         const IVec column = hn::Iota(ITag(), x);
-        const auto in_bounds =
-            hn::And(hn::Gt(column, splatInt(plane.x0 - 1)), hn::Lt(column, splatInt(plane.x1 + 1)));
+        const FMask in_bounds =
+            hn::RebindMask(FTag(), hn::And(hn::Gt(column, splatInt(plane.x0 - 1)),
+                                           hn::Lt(column, splatInt(plane.x1 + 1))));
         const FVec along =
             hn::Mul(splat(plane.dx), hn::Sub(hn::Iota(FTag(), float(x)), splat(float(plane.x0))));
         IVec e[3];
         for (int k = 0; k < 3 && !kAllInside; ++k) {
-            e[k] = hn::Add(splatInt(corner[k]), hn::Mul(hn::Iota(ITag(), 0), splatInt(edges.a[k])));
+            e[k] = hn::Add(
+                splatInt(edges.c[k] + edges.a[k] * (x - edges.x) + edges.b[k] * (y0 - edges.y)),
+                hn::Mul(hn::Iota(ITag(), 0), splatInt(edges.a[k])));
         }
         FVec lowest = splat(3.0e38f);
         for (int y = y0; y <= y1; ++y) {
-            auto covered = in_bounds;
+            FMask covered = in_bounds;
             if constexpr (!kAllInside) {
                 const IVec outside = hn::Or(hn::Or(e[0], e[1]), e[2]);
-                covered = hn::And(covered, hn::Gt(outside, splatInt(-1)));
+                covered = hn::And(covered, hn::RebindMask(FTag(), hn::Gt(outside, splatInt(-1))));
                 for (int k = 0; k < 3; ++k) {
                     e[k] = hn::Add(e[k], splatInt(edges.b[k]));
                 }
@@ -138,80 +185,129 @@ struct TriangleInTile {
         return lowest;
     }
 
-    /// The block's samples within the triangle's bounds; `corner` are edge values at (bx, by).
+    /// All rows of the box; every block it touches.
+    HWY_INLINE void rows() const {
+        const int bx0 = plane.x0 / kBlockSize, bx1 = plane.x1 / kBlockSize;
+        const int by0 = plane.y0 / kBlockSize, by1 = plane.y1 / kBlockSize;
+        const float nearest =
+            plane.at(plane.dx > 0.0f ? plane.x1 : plane.x0, plane.dy > 0.0f ? plane.y1 : plane.y0);
+        bool hidden = true;
+        for (int by = by0; by <= by1; ++by) {
+            for (int bx = bx0; bx <= bx1; ++bx) {
+                const int b = by * kBlocksPerTile + bx;
+                if (nearest > bounds.min[b] && bounds.drawn[b] >= kDrawnBeforeRenewal) {
+                    renewBound(tile, bounds, b);
+                }
+                hidden &= !(nearest > bounds.min[b]);
+            }
+        }
+        if (hidden) {
+            ++tile.blocks_hidden;
+            return;
+        }
+        for (int x = plane.x0; x <= plane.x1; x += int(hn::Lanes(FTag()))) {
+            columns<false>(x, plane.y0, plane.y1);
+        }
+        const uint32_t samples = uint32_t((plane.x1 - plane.x0 + 1) * (plane.y1 - plane.y0 + 1));
+        for (int by = by0; by <= by1; ++by) {
+            for (int bx = bx0; bx <= bx1; ++bx) {
+                bounds.drawn[by * kBlocksPerTile + bx] += std::min(samples, 32u);
+            }
+        }
+    }
+
+    /// The block's samples within the triangle's bounds.
     template <bool kAllInside>
-    HWY_INLINE void block(int bx, int by, const int32_t corner[3]) const {
-        const int y0 = std::max(by, plane.y0), y1 = std::min(by + kBlockSize - 1, plane.y1);
+    HWY_INLINE void block(int bx, int by) const {
+        const int y0 = std::max(by, plane.y0), y1 = std::min(by + kLastInBlock, plane.y1);
         FVec lowest = splat(3.0e38f);
         for (int x = bx; x < bx + kBlockSize; x += int(hn::Lanes(FTag()))) {
-            int32_t first[3];
-            for (int k = 0; k < 3; ++k) {
-                first[k] = corner[k] + edges.a[k] * (x - bx) + edges.b[k] * (y0 - by);
-            }
-            lowest = hn::Min(lowest, columns<kAllInside>(x, y0, y1, first));
+            lowest = hn::Min(lowest, columns<kAllInside>(x, y0, y1));
         }
-        const int b = by / kBlockSize * kBlocksPerTile + bx / kBlockSize;
-        if (y1 - y0 == kBlockSize - 1) {
+        const int b = blockAt(bx, by);
+        if (y1 - y0 == kLastInBlock) {
             bounds.min[b] = hn::GetLane(hn::MinOfLanes(FTag(), lowest));
-            bounds.draws[b] = 0;
+            bounds.drawn[b] = 0;
         } else {
-            bounds.draws[b] = uint8_t(std::min(bounds.draws[b] + 1, kDrawsBeforeRenewal));
+            bounds.drawn[b] += uint32_t(y1 - y0 + 1) * kBlockSize;
         }
     }
 
-    HWY_INLINE void renewBound(int bx, int by, int b) const {
-        FVec lowest = splat(3.0e38f);
-        for (int y = by; y < by + kBlockSize; ++y) {
-            for (int x = bx; x < bx + kBlockSize; x += int(hn::Lanes(FTag()))) {
-                lowest = hn::Min(lowest, hn::Load(FTag(), tile.depth + y * kTileSize + x));
-            }
+    /// Lanes are blocks of a row.
+    struct BlockSteps {
+        IVec x, first_x, last_x;  ///< the first sample; bounded by the box
+        FVec along;               ///< plane.dx · distance of the nearest sample
+        IVec edge[3];             ///< a · x
+        int32_t high[3], low[3];  ///< the farthest that an edge grows and falls in a block
+    };
+
+    HWY_INLINE BlockSteps blockSteps(int first_block) const {
+        BlockSteps s;
+        s.x = hn::ShiftLeft<3>(hn::Iota(ITag(), first_block));
+        s.first_x = hn::Max(s.x, splatInt(plane.x0));
+        s.last_x = hn::Min(hn::Add(s.x, splatInt(kLastInBlock)), splatInt(plane.x1));
+        const IVec nearest_x = plane.dx > 0.0f ? s.last_x : s.first_x;
+        s.along =
+            hn::Mul(splat(plane.dx), hn::ConvertTo(FTag(), hn::Sub(nearest_x, splatInt(plane.x0))));
+        for (int k = 0; k < 3; ++k) {
+            s.edge[k] = hn::Mul(splatInt(edges.a[k]), s.x);
+            s.high[k] = (std::max(edges.a[k], 0) + std::max(edges.b[k], 0)) * kLastInBlock;
+            s.low[k] = (std::min(edges.a[k], 0) + std::min(edges.b[k], 0)) * kLastInBlock;
         }
-        bounds.min[b] = hn::GetLane(hn::MinOfLanes(FTag(), lowest));
-        bounds.draws[b] = 0;
+        return s;
     }
 
-    /// The triangle's largest depth in a block: at the corner that its slopes point to.
-    float nearestDepth(int bx, int by) const {
-        const int x0 = std::max(bx, plane.x0), x1 = std::min(bx + kBlockSize - 1, plane.x1);
-        const int y0 = std::max(by, plane.y0), y1 = std::min(by + kBlockSize - 1, plane.y1);
-        return plane.at(plane.dx > 0.0f ? x1 : x0, plane.dy > 0.0f ? y1 : y0);
-    }
-
-    HWY_INLINE bool hidden(int bx, int by) const {
-        const int b = by / kBlockSize * kBlocksPerTile + bx / kBlockSize;
-        const float nearest = nearestDepth(bx, by);
-        if (nearest > bounds.min[b] && bounds.draws[b] == kDrawsBeforeRenewal) {
-            renewBound(bx, by, b);
+    HWY_INLINE void blockRow(const BlockSteps& s, int first_block, int by) const {
+        constexpr uint32_t kLanes = (1u << hn::MaxLanes(ITag())) - 1u;
+        const int y0 = std::max(by, plane.y0), y1 = std::min(by + kLastInBlock, plane.y1);
+        const float row = plane.origin + plane.dy * float((plane.dy > 0.0f ? y1 : y0) - plane.y0);
+        const FVec nearest =
+            hn::Min(hn::Max(hn::Add(splat(row), s.along), splat(plane.min)), splat(plane.max));
+        const int first = by / kBlockSize * kBlocksPerTile + first_block;
+        const uint32_t boxed = ~maskBits(hn::Gt(s.first_x, s.last_x)) & kLanes;
+        const uint32_t near = maskBits(
+            hn::RebindMask(ITag(), hn::Gt(nearest, hn::LoadU(FTag(), bounds.min + first))));
+        tile.blocks_hidden += uint32_t(std::popcount(boxed & ~near));
+        if ((boxed & near) == 0) {
+            return;
         }
-        return !(nearest > bounds.min[b]);
-    }
-
-    void allBlocks() const {
-        constexpr int kLast = kBlockSize - 1;
-        for (int by = plane.y0 & ~kLast; by <= plane.y1; by += kBlockSize) {
-            for (int bx = plane.x0 & ~kLast; bx <= plane.x1; bx += kBlockSize) {
-                if (hidden(bx, by)) {
+        IVec highest = splatInt(0), lowest = splatInt(0);
+        for (int k = 0; k < 3; ++k) {
+            const int32_t c = edges.c[k] + edges.b[k] * (by - edges.y) - edges.a[k] * edges.x;
+            highest = hn::Or(highest, hn::Add(s.edge[k], splatInt(c + s.high[k])));
+            lowest = hn::Or(lowest, hn::Add(s.edge[k], splatInt(c + s.low[k])));
+        }
+        const uint32_t outside = maskBits(hn::Lt(highest, splatInt(0)));
+        const uint32_t crossed = maskBits(hn::Lt(lowest, splatInt(0)));
+        tile.blocks_outside += uint32_t(std::popcount(boxed & near & outside));
+        alignas(64) float nearest_of[hn::MaxLanes(FTag())];
+        hn::Store(nearest, FTag(), nearest_of);
+        for (uint32_t left = boxed & near & ~outside; left != 0; left &= left - 1) {
+            const int lane = std::countr_zero(left);
+            const int b = first + lane;
+            if (bounds.drawn[b] >= kDrawnBeforeRenewal) {
+                renewBound(tile, bounds, b);
+                if (!(nearest_of[lane] > bounds.min[b])) {
                     ++tile.blocks_hidden;
                     continue;
                 }
-                int32_t corner[3];
-                bool outside = false, all_inside = true;
-                for (int k = 0; k < 3; ++k) {
-                    corner[k] = edges.c[k] + edges.a[k] * bx + edges.b[k] * by;
-                    const int32_t high = std::max(edges.a[k], 0) + std::max(edges.b[k], 0);
-                    const int32_t low = std::min(edges.a[k], 0) + std::min(edges.b[k], 0);
-                    outside |= corner[k] + high * kLast < 0;
-                    all_inside &= corner[k] + low * kLast >= 0;
-                }
-                if (outside) {
-                    ++tile.blocks_outside;
-                    continue;
-                }
-                if (all_inside) {
-                    block<true>(bx, by, corner);
-                } else {
-                    block<false>(bx, by, corner);
-                }
+            }
+            const int bx = (first_block + lane) * kBlockSize;
+            if ((crossed >> lane & 1u) != 0) {
+                block<false>(bx, by);
+            } else {
+                block<true>(bx, by);
+            }
+        }
+    }
+
+    void blocks() const {
+        constexpr int kLanes = int(hn::MaxLanes(FTag()));
+        for (int first = plane.x0 / kBlockSize & ~(kLanes - 1); first * kBlockSize <= plane.x1;
+             first += kLanes) {
+            const BlockSteps steps = blockSteps(first);
+            for (int by = plane.y0 & ~kLastInBlock; by <= plane.y1; by += kBlockSize) {
+                blockRow(steps, first, by);
             }
         }
     }
@@ -224,22 +320,95 @@ inline void clearTile(TileContext& tile) {
     }
 }
 
+/// The samples of a small triangle's mask that lie in the tile.
+HWY_INLINE uint32_t smallSamples(const CoverBatch& batch, int lane) {
+    constexpr uint32_t kColumns[kSmallSize] = {0x1111, 0x3333, 0x7777, 0xFFFF};
+    return uint32_t(batch.samples[lane]) & kColumns[batch.x1[lane] - batch.x0[lane]] &
+           ((0x10000u >> (4 * (3 - (batch.y1[lane] - batch.y0[lane])))) - 1u);
+}
+
+HWY_INLINE void drawSmall(TileContext& tile, BlockBounds& bounds, const CoverBatch& batch, int lane,
+                          uint32_t index) {
+    const float origin = batch.origin[lane], dx = batch.dx[lane], dy = batch.dy[lane];
+    const float min = batch.min[lane], max = batch.max[lane];
+    const int first = batch.y0[lane] * kTileSize + batch.x0[lane];
+    const uint32_t samples = smallSamples(batch, lane);
+    for (uint32_t left = samples; left != 0; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        const int i = bit & 3, j = bit >> 2;
+        const float z = std::min(std::max((origin + dy * float(j)) + dx * float(i), min), max);
+        const int at = first + j * kTileSize + i;
+        if (z > tile.depth[at]) {
+            tile.depth[at] = z;
+            tile.visible[at] = index;
+        }
+    }
+    bounds.drawn[blockAt(batch.x0[lane], batch.y0[lane])] += uint32_t(std::popcount(samples));
+}
+
+template <bool kTested>
+HWY_NOINLINE void drawOne(TileContext& tile, BlockBounds& bounds, const CoverBatch& batch, int lane,
+                          uint32_t i, const Chunk& chunk) {
+    TileEdges edges;
+    TilePlane plane;
+    if ((batch.wide >> lane & 1u) != 0) {
+        const SetupTriangle& t = chunk.wide[tile.triangles[i].id & kTriangleMask];
+        if (!tileEdges(t, tile, edges)) {
+            return;
+        }
+        plane = makeTilePlane(t, tile);
+    } else {
+        plane = {batch.x0[lane], batch.y0[lane],     batch.x1[lane],
+                 batch.y1[lane], batch.origin[lane], batch.dx[lane],
+                 batch.dy[lane], batch.min[lane],    batch.max[lane]};
+        edges.x = plane.x0;
+        edges.y = plane.y0;
+        for (int k = 0; k < 3; ++k) {
+            edges.c[k] = batch.c[k][lane];
+            edges.a[k] = batch.a[k][lane];
+            edges.b[k] = batch.b[k][lane];
+        }
+    }
+    const TriangleInTile<kTested> t{tile, bounds, i, chunk, plane, edges};
+    const int width = plane.x1 - plane.x0, height = plane.y1 - plane.y0;
+    const bool narrow = width < kBlockSize || (width < 2 * kBlockSize && height < 2 * kBlockSize);
+    // Rows may reach beyond the tile, where forward shading must not write.
+    if (narrow && !(kTested && tile.forward)) {
+        t.rows();
+    } else {
+        t.blocks();
+    }
+}
+
 void rasterizeTile(TileContext& tile) {
     BlockBounds bounds;
     clearTile(tile);
     if (tile.forward) {
         shadeTileLevel<0>(tile);  // all background
     }
-    for (uint32_t ref = 0; ref < tile.ref_count; ++ref) {
-        const SetupTriangle t = setupOf(tile.refs[ref], tile.x0, tile.y0);
-        TileEdges edges;
-        if (tileEdges(t, tile, edges)) {
-            TriangleInTile{tile,  ref,   tile.refs[ref].chunk->alpha, makeTilePlane(t, tile),
-                           edges, bounds}
-                .allBlocks();
+    CoverBatch batch;
+    const TileRun* run = tile.runs;
+    for (uint32_t first = 0; first < tile.triangle_count; first += kBatch) {
+        const int count = int(std::min(tile.triangle_count - first, uint32_t(kBatch)));
+        setUpBatch(tile, tile.triangles + first, count, batch);
+        for (uint32_t left = batch.alive; left != 0; left &= left - 1) {
+            const int lane = std::countr_zero(left);
+            const uint32_t i = first + uint32_t(lane);
+            while (i >= run[1].begin) {
+                ++run;
+            }
+            if (run->chunk->alpha || tile.forward) {
+                drawOne<true>(tile, bounds, batch, lane, i, *run->chunk);
+            } else if ((batch.small >> lane & 1u) != 0) {
+                drawSmall(tile, bounds, batch, lane, i);
+            } else {
+                drawOne<false>(tile, bounds, batch, lane, i, *run->chunk);
+            }
         }
     }
 }
+
+#endif
 
 }  // namespace HWY_NAMESPACE
 }  // namespace still::internal

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "rasterizer/internal/shade_reference.h"
+#include "rasterizer/internal/shade_setup.h"
 #include "rasterizer/internal/tile.h"
 #include "rasterizer/internal/triangle_setup.h"
 
@@ -27,8 +28,8 @@ void shadeTileReference(const TileContext& tile) {
     }
 }
 
-void rasterizeTriangle(TileContext& tile, uint32_t ref) {
-    const SetupTriangle t = setupOf(tile.refs[ref], tile.x0, tile.y0);
+void rasterizeTriangle(TileContext& tile, const Chunk& chunk, uint32_t triangle) {
+    const SetupTriangle t = setupOf(tile.triangles[triangle], chunk, tile.x0, tile.y0);
     const TilePlane plane = makeTilePlane(t, tile);
     Edge edges[3];
     for (int k = 0; k < 3; ++k) {
@@ -41,14 +42,19 @@ void rasterizeTriangle(TileContext& tile, uint32_t ref) {
             });
             const int i = y * kTileSize + x;
             const float z = plane.at(x, y);
-            if (!covered || !(z > tile.depth[i]) ||
-                (tile.refs[ref].chunk->alpha && !alphaPasses(tile, tile.shade[ref], x, y))) {
+            if (!covered || !(z > tile.depth[i])) {
+                continue;
+            }
+            if (chunk.alpha || tile.forward) {
+                prepareTriangle(tile, chunk, triangle);
+            }
+            if (chunk.alpha && !alphaPasses(tile, tile.shade[triangle], x, y)) {
                 continue;
             }
             tile.depth[i] = z;
-            tile.visible[i] = ref;
+            tile.visible[i] = triangle;
             if (tile.forward) {
-                shadePixel(tile, &tile.shade[ref], x, y, z);
+                shadePixel(tile, &tile.shade[triangle], x, y, z);
             }
         }
     }
@@ -59,15 +65,39 @@ void rasterizeTileReference(TileContext& tile) {
     if (tile.forward) {
         shadeTileReference(tile);
     }
-    for (uint32_t ref = 0; ref < tile.ref_count; ++ref) {
-        rasterizeTriangle(tile, ref);
+    for (const TileRun* run = tile.runs; run->chunk != nullptr; ++run) {
+        for (uint32_t i = run[0].begin; i < run[1].begin; ++i) {
+            rasterizeTriangle(tile, *run->chunk, i);
+        }
+    }
+}
+
+void prepareShadingReference(TileContext& tile) {
+    std::fill_n(tile.seen, tile.triangle_count, uint8_t{0});
+    for (int y = 0; y < tile.height; ++y) {
+        for (int x = 0; x < tile.width; ++x) {
+            const uint32_t i = tile.visible[y * kTileSize + x];
+            if (i != kNothingVisible) {
+                tile.seen[i] = 1;
+                ++tile.pixels_shaded;
+            }
+        }
+    }
+    for (const TileRun* run = tile.runs; run->chunk != nullptr; ++run) {
+        for (uint32_t i = run[0].begin; i < run[1].begin; ++i) {
+            if (tile.seen[i] != 0) {
+                prepareTriangle(tile, *run->chunk, i);
+                tile.features |= tile.frame->surfaces[run->chunk->surface].features;
+            }
+        }
     }
 }
 
 }  // namespace
 
 const RasterKernels& referenceKernels() {
-    static constexpr RasterKernels kKernels{rasterizeTileReference, shadeTileReference};
+    static constexpr RasterKernels kKernels{rasterizeTileReference, prepareShadingReference,
+                                            shadeTileReference};
     return kKernels;
 }
 

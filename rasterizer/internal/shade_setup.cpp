@@ -1,0 +1,91 @@
+#include "rasterizer/internal/shade_setup.h"
+
+#include <algorithm>
+
+#include "rasterizer/fixed.h"
+#include "rasterizer/internal/tile.h"
+
+namespace still::internal {
+
+float shadingFlip(const Surface& s, const InstanceSetup& instance, uint32_t triangle,
+                  bool counter_clockwise) {
+    const uint32_t* index = s.indices + size_t(triangle) * 3;
+    double p[3][3], n[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+        p[k][0] = double(s.x[index[k]]);
+        p[k][1] = double(s.y[index[k]]);
+        p[k][2] = double(s.z[index[k]]);
+        for (int i = 0; i < 3; ++i) {
+            n[i] += double(s.attributes[size_t(index[k]) * 5 + size_t(i)]);
+        }
+    }
+    double a[3], b[3];
+    for (int i = 0; i < 3; ++i) {
+        a[i] = p[1][i] - p[0][i];
+        b[i] = p[2][i] - p[0][i];
+    }
+    const double along = ((a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1]) +
+                         (a[0] * b[1] - a[1] * b[0]) * n[2];
+    const bool winding_side_seen = counter_clockwise != instance.mirrored;
+    return winding_side_seen == (along >= 0.0) ? 1.0f : -1.0f;
+}
+
+void makeShadeTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
+    const FrameTables& frame = *tile.frame;
+    const TileTriangle& record = tile.triangles[i];
+    ShadeTriangle& out = tile.shade[i];
+    SetupTriangle t = setupOf(record, chunk, tile.x0, tile.y0);
+    const Surface& s = frame.surfaces[chunk.surface];
+    const int order[3] = {0, t.swapped != 0 ? 2 : 1, t.swapped != 0 ? 1 : 2};
+    const uint32_t* index = s.indices + size_t(t.triangle) * 3;
+    if ((record.id & kWide) == 0) {
+        for (int k = 0; k < 3; ++k) {
+            t.inv_w[k] = chunk.vertices[index[order[k]]].inv_w;
+        }
+    }
+    const int anchor_x =
+        std::max(tile.x0, (std::min({t.x_fx8[0], t.x_fx8[1], t.x_fx8[2]}) + 255) >> 8);
+    const int anchor_y =
+        std::max(tile.y0, (std::min({t.y_fx8[0], t.y_fx8[1], t.y_fx8[2]}) + 255) >> 8);
+    double value[3], dx[3], dy[3];  // of p_k = λ_k / w_k, in the setup triangle's vertex order
+    double area2 = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int i = k == 2 ? 0 : k + 1;  // the edge opposite to vertex k runs from i to j
+        const int j = i == 2 ? 0 : i + 1;
+        const int64_t ex = t.x_fx8[j] - t.x_fx8[i], ey = t.y_fx8[j] - t.y_fx8[i];
+        const int64_t e = ex * (anchor_y * kSubpixelOne - t.y_fx8[i]) -
+                          ey * (anchor_x * kSubpixelOne - t.x_fx8[i]);
+        value[k] = double(e);
+        dx[k] = double(-ey * kSubpixelOne);
+        dy[k] = double(ex * kSubpixelOne);
+        area2 += value[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double scale = double(t.inv_w[k]) / area2;
+        value[k] *= scale;
+        dx[k] *= scale;
+        dy[k] *= scale;
+    }
+    for (int k = 0; k < 3; ++k) {
+        double v = 0, vx = 0, vy = 0;
+        for (int c = 0; c < 3; ++c) {
+            // Setup corner c is source corner order[c], or a clipped corner between all three.
+            const double weight = t.clip >= 0 ? double(chunk.clips[size_t(t.clip)].b[order[c]][k])
+                                              : (order[c] == k ? 1.0 : 0.0);
+            v += value[c] * weight;
+            vx += dx[c] * weight;
+            vy += dy[c] * weight;
+        }
+        out.p[k] = float(v);
+        out.p_dx[k] = float(vx);
+        out.p_dy[k] = float(vy);
+        out.vertex[k] = int32_t(index[k]);
+    }
+    out.anchor_x = float(anchor_x - tile.x0);
+    out.anchor_y = float(anchor_y - tile.y0);
+    out.surface = chunk.surface;
+    // With y down, the triangles that had to be swapped run counter-clockwise on the screen.
+    out.flip = shadingFlip(s, frame.instances[s.instance], t.triangle, t.swapped != 0);
+}
+
+}  // namespace still::internal
