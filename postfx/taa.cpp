@@ -47,6 +47,9 @@ struct TileMemory {
     bool finished = false;  ///< … and complete
     bool settled = false;   ///< … and all shown
     bool changed = true;    ///< the last frame changed the picture
+    bool tested = true;     ///< something moved or changed here in this frame
+    bool keeps = true;      ///< this frame's samples go into the ring
+    int quiet = 0;          ///< frames kept since it was tested, up to the ring's length
 };
 
 bool anyOf(std::span<const uint64_t> surfaces) {
@@ -87,15 +90,15 @@ struct Taa::State {
 
     void begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings);
     void noteChanges(const TaaFrame& frame, bool now);
-    bool disturbed(const GBuffer& gbuffer, int tile) const;
+    bool planTiles(const GBuffer& gbuffer, bool shading_changed);
     bool finished(int cap) const;
     void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
                    Workers& workers);
-    void forgetStarted(const GBuffer& gbuffer, Workers& workers);
-    void keepAndSum(const GBuffer& gbuffer, const Job& job, const taa::TileKernels& kernels,
-                    bool shading_changed, int tile);
+    void forgetStarted(Workers& workers);
+    void advanceRing(const TaaFrame& frame, bool shading_changed, Workers& workers);
+    void keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile);
 };
 
 /// Makes the planes fit; a changed size, a changed ring and a reset leave nothing of the past.
@@ -154,16 +157,22 @@ void Taa::State::noteChanges(const TaaFrame& frame, bool now) {
     since_change = now ? 0 : since_change + 1;
 }
 
-/// Something moved in the tile or in one of its neighbours, whose pixels reach into its windows.
-bool Taa::State::disturbed(const GBuffer& gbuffer, int tile) const {
-    const int tx = tile % tiles_x, ty = tile / tiles_x;
-    bool moved = false;
-    for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, gbuffer.tiles_y - 1); ++y) {
-        for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, tiles_x - 1); ++x) {
-            moved |= !gbuffer.tiles[size_t(y * tiles_x + x)].still();
-        }
+/// Notes what each tile needs; whether any needs the ring. Where nothing happens, the ring is of
+/// use only until it is full and the sums are shown: later frames would say the same.
+bool Taa::State::planTiles(const GBuffer& gbuffer, bool shading_changed) {
+    bool any = false;
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        TileMemory& tile = tiles[i];
+        const TileFacts& facts = gbuffer.tiles[i];
+        tile.tested = shading_changed || facts.moved;
+        tile.quiet = tile.tested ? 0 : tile.quiet;
+        tile.keeps = first || facts.camera_moved || !tile.settled || tile.quiet < int(ring.size());
+        any |= tile.keeps;
     }
-    return moved;
+    for (TileMemory& tile : tiles) {
+        tile.keeps = any;  // all samples of a slot lie alike
+    }
+    return any;
 }
 
 /// Without motion or change the picture stays.
@@ -225,39 +234,55 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
 }
 
 /// Before this frame is kept: the cursor's slot still holds the last one.
-void Taa::State::forgetStarted(const GBuffer& gbuffer, Workers& workers) {
+void Taa::State::forgetStarted(Workers& workers) {
     if (!started.any()) {
         return;
     }
     const Image<uint32_t>& last = ring[size_t(cursor)].blue_id;
     workers.parallelFor(int(tiles.size()), 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
-            if (tiles[size_t(tile)].summed && disturbed(gbuffer, tile)) {
+            if (tiles[size_t(tile)].summed && tiles[size_t(tile)].tested) {
                 taa::forgetStarted(started, last.view(), rectOf(tile), count.view());
             }
         }
     });
 }
 
-void Taa::State::keepAndSum(const GBuffer& gbuffer, const Job& job, const taa::TileKernels& kernels,
-                            bool shading_changed, int tile) {
+/// The cursor's slot becomes this frame's, and what is counted in kept frames goes on.
+void Taa::State::advanceRing(const TaaFrame& frame, bool shading_changed, Workers& workers) {
+    const int slots = int(ring.size());
+    noteChanges(frame, shading_changed);
+    noteTurning(frame.turning_surfaces);
+    forgetStarted(workers);
+    started.countAges(first, slots);
+    cursor = (cursor + 1) % slots;
+    frames = std::min(frames + 1, slots);
+    ring[size_t(cursor)].jitter_x_fx8 = frame.jitter_x_fx8;
+    ring[size_t(cursor)].jitter_y_fx8 = frame.jitter_y_fx8;
+}
+
+void Taa::State::keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile) {
     TileMemory& memory = tiles[size_t(tile)];
-    kernels.record(job, rectOf(tile));
+    if (memory.keeps) {
+        kernels.record(job, rectOf(tile));
+        memory.quiet = std::min(memory.quiet + 1, int(ring.size()));
+    }
     if (job.camera_moved && !first) {
-        memory = {};
+        memory.summed = memory.finished = memory.settled = false;
+        memory.changed = true;
+        memory.quiet = 0;
         return;
     }
-    const bool tested = shading_changed || disturbed(gbuffer, tile);
-    if (!tested && memory.summed && memory.finished && job.sample_cap == sample_cap) {
+    if (!memory.tested && memory.summed && memory.finished && job.sample_cap == sample_cap) {
         memory.changed = false;
         return;
     }
     const taa::SumsResult result = kernels.accumulate(
-        job, rectOf(tile), tested ? Stillness::tested : Stillness::all, !memory.summed);
-    memory = {.summed = true,
-              .finished = result.finished,
-              .settled = result.settled,
-              .changed = result.changed || !result.settled};
+        job, rectOf(tile), memory.tested ? Stillness::tested : Stillness::all, !memory.summed);
+    memory.summed = true;
+    memory.finished = result.finished;
+    memory.settled = result.settled;
+    memory.changed = result.changed || !result.settled;
 }
 
 /// Without a past there is only this frame, filtered in space.
@@ -297,19 +322,14 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
         return;
     }
     s.started.note(gbuffer, s.first, workers);
-    s.noteChanges(frame, shading_changed);
-    s.noteTurning(frame.turning_surfaces);
-    s.forgetStarted(gbuffer, workers);
-    s.started.countAges(s.first, settings.ring);
-    s.cursor = (s.cursor + 1) % settings.ring;
-    s.frames = std::min(s.frames + 1, settings.ring);
-    s.ring[size_t(s.cursor)].jitter_x_fx8 = frame.jitter_x_fx8;
-    s.ring[size_t(s.cursor)].jitter_y_fx8 = frame.jitter_y_fx8;
+    if (s.planTiles(gbuffer, shading_changed)) {
+        s.advanceRing(frame, shading_changed, workers);
+    }
     const Job job = s.makeJob(gbuffer, settings);
     const taa::TileKernels kernels = taa::tileKernels(settings.simd);
     workers.parallelFor(int(s.tiles.size()), 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
-            s.keepAndSum(gbuffer, job, kernels, shading_changed, tile);
+            s.keepAndSum(job, kernels, tile);
         }
     });
     s.sample_cap = settings.sample_cap;

@@ -35,7 +35,8 @@ constexpr int16_t kNoHistory = INT16_MIN;
 
 /// What is known about a tile once it is rasterized; later passes choose their loop by it.
 struct TileFacts {
-    bool moved = false;         ///< an instance that moved is here now or was in the last frame
+    /// An instance that moved is here, or within 2 pixels, now or was so in the last frame.
+    bool moved = false;
     bool camera_moved = false;  ///< same for all tiles of a frame
 
     /// Nothing in the tile changed place since the last frame: all motion is exactly zero.

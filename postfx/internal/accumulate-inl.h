@@ -1,6 +1,5 @@
 // Sums of still pixels in lanes of 16 bits; accumulate_reference.cpp is the truth. Whole vectors
-// reach into the rows' padding, whose pixels grow along: none has fewer samples than all of its
-// row. Included once per target by taa_simd.cpp.
+// reach into the rows' padding. Included once per target by taa_simd.cpp.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::taa {
@@ -83,26 +82,45 @@ HWY_INLINE void addSamples(const Growth& growth, V sample, V& mean, V& rest) {
     rest = hn::Sub(hn::Min(left, hn::Sub(left, growth.grown)), half);
 }
 
-/// All lanes have `count` samples and take one more.
-HWY_INLINE void growAlike(const Job& job, ptrdiff_t at, int count) {
+/// All pixels of a row have `count` samples and take one more. Channel after channel: few streams.
+HWY_INLINE void growRow(const Job& job, ptrdiff_t at, int width, int count) {
     const D d;
+    const int lanes = int(hn::Lanes(d));
     const Growth growth = growthOf(count + 1);
     for (int c = 0; c < 3; ++c) {
+        const uint16_t* samples = job.now.colour[c] + at;
         const uint16_t* from = (count < job.settled ? job.sums.mean[c] : job.shown[c]) + at;
         uint16_t* to = (count + 1 < job.settled ? job.sums.mean[c] : job.shown[c]) + at;
-        const V sample = hn::LoadU(d, job.now.colour[c] + at);
-        V mean = sample, rest = hn::Zero(d);
-        if (count > 0) {
-            mean = hn::LoadU(d, from);
-            rest = loadSigned(job.sums.rest[c] + at);
-            addSamples(growth, sample, mean, rest);
+        int8_t* rests = job.sums.rest[c] + at;
+        for (int x = 0; x < width; x += lanes) {
+            const V sample = hn::LoadU(d, samples + x);
+            V mean = sample, rest = hn::Zero(d);
+            if (count > 0) {
+                mean = hn::LoadU(d, from + x);
+                rest = loadSigned(rests + x);
+                addSamples(growth, sample, mean, rest);
+            }
+            hn::StoreU(mean, d, to + x);
+            storeSigned(rest, rests + x);
         }
-        hn::StoreU(mean, d, to);
-        storeSigned(rest, job.sums.rest[c] + at);
     }
-    if (count + 1 >= job.settled) {
-        storeBytes(growth.grown, job.shown_count + at);
+    for (int x = 0; x < width; x += lanes) {
+        storeBytes(growth.grown, job.sums.count + at + x);
+        if (count + 1 >= job.settled) {
+            storeBytes(growth.grown, job.shown_count + at + x);
+        }
     }
+}
+
+/// The count that all pixels of a row have, or −1.
+HWY_INLINE int countOfRow(const uint8_t* count, int width) {
+    const D d;
+    const V first = set(count[0]);
+    M same = hn::Eq(first, first);
+    for (int x = 0; x < width; x += int(hn::Lanes(d))) {
+        same = hn::And(same, hn::Eq(loadBytes(count + x), first));
+    }
+    return all(same) ? count[0] : -1;
 }
 
 /// Lanes that grow take one more sample, whatever they have.
@@ -129,45 +147,108 @@ HWY_INLINE void growApart(const Job& job, ptrdiff_t at, V count, M grows) {
     storeBytes(hn::IfThenElse(show, growth.grown, shown_count), job.shown_count + at);
 }
 
+/// disturbedRow()
+HWY_INLINE bool disturbedLanes(const Job& job, const TileRect& tile, int y, uint8_t* flags) {
+    if (job.change_age != nullptr) {
+        return disturbedRow(job, tile, y, flags);
+    }
+    const D d;
+    const int lanes = int(hn::Lanes(d)), width = tile.x1 - tile.x0;
+    const ptrdiff_t at = y * job.stride + tile.x0;
+    const ptrdiff_t up = y > 0 ? -job.stride : 0, down = y + 1 < job.height ? job.stride : 0;
+    const uint16_t* ids[3] = {job.now.id + at + up, job.now.id + at, job.now.id + at + down};
+    uint8_t columns[kTileSize + 2 * kMostLanes] = {};  // that of tile.x0 is the second
+    M any_moved = hn::Ne(set(0), set(0));
+    for (int x = 0; x < width; x += lanes) {
+        const V all_three = hn::Or(hn::Or(hn::LoadU(d, ids[0] + x), hn::LoadU(d, ids[1] + x)),
+                                   hn::LoadU(d, ids[2] + x));
+        const M moved = hn::Ne(hn::And(all_three, set(kMovedBit)), hn::Zero(d));
+        storeBytes(hn::IfThenElseZero(moved, set(kMoved)), columns + 1 + x);
+        any_moved = hn::Or(any_moved, moved);
+    }
+    const auto column = [&](int x) {
+        const int both = ids[0][x] | ids[1][x] | ids[2][x];
+        return uint8_t((both & kMovedBit) != 0 ? kMoved : 0);
+    };
+    columns[0] = tile.x0 > 0 ? column(-1) : 0;
+    columns[width + 1] = tile.x1 < job.width ? column(width) : 0;
+    if (!any(any_moved) && columns[0] + columns[width + 1] == 0) {
+        return false;
+    }
+    for (int x = 0; x < width; x += lanes) {
+        const V sides = hn::Or(loadBytes(columns + x), loadBytes(columns + x + 2));
+        storeBytes(hn::Or(sides, loadBytes(columns + x + 1)), flags + x);
+    }
+    return true;
+}
+
+/// Pixels of a row that differ in their counts or in what happens to them.
+HWY_INLINE void sumRow(const Job& job, ptrdiff_t at, int width, const uint8_t* disturbed,
+                       bool restart, SumsResult& result) {
+    const D d;
+    const V zero = hn::Zero(d);
+    for (int x = 0; x < width; x += int(hn::Lanes(d))) {
+        V count = restart ? zero : loadBytes(job.sums.count + at + x);
+        const V disturbance = loadBytes(disturbed + x);
+        const M anew = hn::Ne(disturbance, zero);
+        result.changed |= any(hn::And(anew, hn::Ne(count, zero)));
+        count = hn::IfThenZeroElse(anew, count);
+        const M padding = reaches(hn::Iota(d, uint16_t(x)), set(width));
+        const M full = hn::Or(padding, reaches(count, set(job.sample_cap)));
+        const M grows = hn::AndNot(full, hn::Ne(disturbance, set(kMoved)));
+        const V grown = hn::Add(count, hn::IfThenElseZero(grows, set(1)));
+        storeBytes(grown, job.sums.count + at + x);
+        result.settled &= all(hn::Or(padding, reaches(grown, set(job.settled))));
+        result.finished &= all(hn::Or(padding, reaches(grown, set(job.sample_cap))));
+        if (any(grows)) {
+            growApart(job, at + x, count, grows);
+            result.changed = true;
+        }
+    }
+}
+
+/// Rows of a tile lie too far apart for the hardware to know where the next one is.
+constexpr int kRowsAhead = 3;
+HWY_INLINE void prefetchRow(const Job& job, ptrdiff_t at) {
+    const auto lines = [](const auto* p) {
+        for (size_t i = 0; i < kTileSize; i += 64 / sizeof(*p)) {
+            hwy::Prefetch(p + i);
+        }
+    };
+    for (int c = 0; c < 3; ++c) {
+        lines(job.now.colour[c] + at);
+        lines(job.shown[c] + at);
+        lines(job.sums.rest[c] + at);
+    }
+    lines(job.sums.count + at);
+    lines(job.shown_count + at);
+}
+
 }  // namespace sums
 
 HWY_ATTR SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillness stillness,
                                    bool restart) noexcept {
-    using namespace sums;
-    const D d;
-    const int lanes = int(hn::Lanes(d));
-    const V zero = hn::Zero(d);
     SumsResult result;
-    uint8_t disturbed[kTileSize + kMostLanes] = {};
+    uint8_t disturbed[kTileSize + sums::kMostLanes] = {};
+    const int width = tile.x1 - tile.x0;
     for (int y = tile.y0; y < tile.y1; ++y) {
-        if (stillness == Stillness::tested) {
-            disturbedRow(job, tile, y, disturbed);
+        const ptrdiff_t at = y * job.stride + tile.x0;
+        if (y + sums::kRowsAhead < tile.y1) {
+            sums::prefetchRow(job, at + sums::kRowsAhead * job.stride);
         }
-        for (int x = tile.x0; x < tile.x1; x += lanes) {
-            const ptrdiff_t at = y * job.stride + x;
-            V count = restart ? zero : loadBytes(job.sums.count + at);
-            M grows = hn::Not(reaches(count, set(job.sample_cap)));
-            if (stillness == Stillness::tested) {
-                const V disturbance = loadBytes(disturbed + (x - tile.x0));
-                const M anew = hn::Ne(disturbance, zero);
-                result.changed |= any(hn::And(anew, hn::Ne(count, zero)));
-                count = hn::IfThenZeroElse(anew, count);
-                grows = hn::And(hn::Ne(disturbance, set(kMoved)), hn::Or(anew, grows));
+        const bool calm =
+            stillness == Stillness::all || !sums::disturbedLanes(job, tile, y, disturbed);
+        const int count = restart ? 0 : sums::countOfRow(job.sums.count + at, width);
+        if (!calm || count < 0) {
+            if (calm) {
+                std::fill_n(disturbed, kTileSize, uint8_t{0});
             }
-            const V grown = hn::Add(count, hn::IfThenElseZero(grows, set(1)));
-            storeBytes(grown, job.sums.count + at);
-            result.settled &= all(reaches(grown, set(job.settled)));
-            result.finished &= all(reaches(grown, set(job.sample_cap)));
-            if (!any(grows)) {
-                continue;
-            }
+            sums::sumRow(job, at, width, disturbed, restart, result);
+        } else if (count < job.sample_cap) {
+            sums::growRow(job, at, width, count);
             result.changed = true;
-            const int first = hn::GetLane(count);
-            if (all(hn::And(grows, hn::Eq(count, set(first))))) {
-                growAlike(job, at, first);
-            } else {
-                growApart(job, at, count, grows);
-            }
+            result.settled &= count + 1 >= job.settled;
+            result.finished &= count + 1 >= job.sample_cap;
         }
     }
     return result;

@@ -26,7 +26,8 @@ SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillne
 /// or an object that moved.
 constexpr uint8_t kChanged = 1;
 constexpr uint8_t kMoved = 2;
-/// Fills flags[x − tile.x0] for the pixels of row y; 0 where nothing happened.
-void disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) noexcept;
+/// Fills flags[x − tile.x0] for the pixels of row y, 0 where nothing happened; whether anything
+/// did.
+bool disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) noexcept;
 
 }  // namespace still::taa

@@ -36,8 +36,9 @@ void grow(const Job& job, ptrdiff_t at, int count) {
 
 }  // namespace
 
-void disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) noexcept {
+bool disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) noexcept {
     const int width = tile.x1 - tile.x0;
+    bool any = false;
     std::memset(flags, 0, size_t(width));
     for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
         const uint16_t* row = job.now.id + j * job.stride;
@@ -51,8 +52,10 @@ void disturbedRow(const Job& job, const TileRect& tile, int y, uint8_t* flags) n
             for (int i = first; i <= last; ++i) {
                 flags[i] = std::max(flags[i], flag);
             }
+            any = true;
         }
     }
+    return any;
 }
 
 SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillness stillness,

@@ -75,8 +75,8 @@ void renderPixel(const World& world, int frame, int x, int y, Point screen, stil
     out.depth_before.at(x, y) = still::logDepth16(out.depth.at(x, y));
 }
 
-/// Marks tiles where a moving layer is now or was before, pixel by pixel at the sample positions
-/// and around them.
+/// Marks tiles that a moving layer is now or was before within 2 pixels of, by points half a pixel
+/// apart.
 void fillFacts(const World& world, int frame, still::GBuffer& out) {
     for (int t = 0; t < int(out.tiles.size()); ++t) {
         still::TileFacts& facts = out.tiles[size_t(t)];
@@ -88,8 +88,8 @@ void fillFacts(const World& world, int frame, still::GBuffer& out) {
             if (!layer.moves || !differs(now, old)) {
                 continue;
             }
-            for (int y = 2 * y0 - 1; y < 2 * (y0 + still::kTileSize); ++y) {
-                for (int x = 2 * x0 - 1; x < 2 * (x0 + still::kTileSize); ++x) {
+            for (int y = 2 * (y0 - 2); y < 2 * (y0 + still::kTileSize + 2); ++y) {
+                for (int x = 2 * (x0 - 2); x < 2 * (x0 + still::kTileSize + 2); ++x) {
                     const Point p{x * 0.5, y * 0.5};
                     facts.moved |= layer.covers(now.toLocal(p)) || layer.covers(old.toLocal(p));
                 }
