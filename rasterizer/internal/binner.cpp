@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "rasterizer/fixed.h"
 #include "rasterizer/internal/clip.h"
@@ -14,14 +15,6 @@ namespace still::internal {
 namespace {
 
 constexpr int kTileFx8 = kTileSize * kSubpixelOne;
-
-// BinScratch::Entry::source: an index in the batch and how far its tile is from the first one, or
-// an index in Chunk::wide.
-constexpr uint32_t kSourceMask = 0xFFFF;
-constexpr uint32_t kTileRight = 1u << 16, kTileBelow = 1u << 17;
-constexpr uint32_t kSourceSeveral = 1u << 18, kSourceWide = 1u << 19;
-static_assert(TriangleBatch::kCapacity <= kSourceMask &&
-              kChunkTriangles * (kMaxClippedCorners - 2) <= kSourceMask);
 
 /// A tile is left out when one edge has all its samples outside.
 bool outsideAnEdge(const SetupTriangle& t, int tile_x0, int tile_y0) {
@@ -67,6 +60,7 @@ class WideSetup {
         t.triangle = input_.first + triangle;
         t.clip = clip;
         chunk_.wide.push_back(t);
+        scratch_.wide_boxes.push_back(pixelBox(t, view_.width, view_.height));
     }
 
     void addClipped(const ScreenVertex v[3], const uint32_t index[3], uint32_t triangle) {
@@ -123,8 +117,8 @@ class WideSetup {
 /// Batch and wide triangles → records by tile.
 class TileSort {
   public:
-    TileSort(const FrameView& view, BinScratch& scratch, Chunk& chunk)
-        : view_(view), batch_(scratch.batch), scratch_(scratch), chunk_(chunk) {}
+    TileSort(BinScratch& scratch, Chunk& chunk)
+        : batch_(scratch.batch), scratch_(scratch), chunk_(chunk) {}
 
     /// Sets the rectangle; false when nothing is visible.
     bool bound() {
@@ -133,29 +127,31 @@ class TileSort {
             r = {int16_t(batch_.tile_x0), int16_t(batch_.tile_y0), int16_t(batch_.tile_x1),
                  int16_t(batch_.tile_y1)};
         }
-        for (const SetupTriangle& t : chunk_.wide) {
-            const TileRect tiles = tilesOf(pixelBox(t, view_.width, view_.height));
+        for (const PixelBox& box : scratch_.wide_boxes) {
+            const TileRect tiles = tilesOf(box);
             r = {std::min(r.x0, tiles.x0), std::min(r.y0, tiles.y0), std::max(r.x1, tiles.x1),
                  std::max(r.y1, tiles.y1)};
         }
         chunk_.rect = r.x1 < 0 ? TileRect{} : r;
+        width_ = uint32_t(chunk_.rect.width());
+        first_ = uint32_t(chunk_.rect.y0) * width_ + uint32_t(chunk_.rect.x0);
         return r.x1 >= 0;
     }
 
-    /// Lists which triangle goes to which tile, and counts.
-    void listEntries() {
-        chunk_.offsets.assign(size_t(chunk_.rect.width()) * size_t(chunk_.rect.height()) + 1, 0);
+    /// Lists which record goes to which tile, in submission order, and counts those of each tile.
+    void list() {
+        chunk_.offsets.assign(size_t(width_) * size_t(chunk_.rect.height()) + 1, 0);
         uint32_t wide = 0;
         const uint32_t* wide_end = scratch_.wide_ends.data();
         for (uint32_t i = 0; i < batch_.count; ++i) {
-            const uint32_t id = batch_.rest[i].id;
-            if ((id & (kWide | kSeveralTiles)) == 0) {
-                addEntry(firstTile(i), i);
-            } else if ((id & kWide) == 0) {
-                listSeveral(i);
+            const uint32_t place = batch_.place[i];
+            if (place <= 0xFFFF) {
+                add(tileOf(place), i);
+            } else if ((place & TriangleBatch::kWidePlace) == 0) {
+                addSeveral(i, tileOf(place & 0xFFFF));
             } else {
                 for (const uint32_t end = *wide_end++; wide < end; ++wide) {
-                    listWide(wide);
+                    addWide(wide);
                 }
             }
         }
@@ -163,116 +159,85 @@ class TileSort {
 
     void placeRecords() {
         uint32_t sum = 0;
-        for (uint32_t& offset : chunk_.offsets) {
-            const uint32_t count = offset;
-            offset = sum;
-            sum += count;
+        uint32_t* const offsets = chunk_.offsets.data();
+        for (size_t i = 0; i < chunk_.offsets.size(); ++i) {
+            sum += std::exchange(offsets[i], sum);
         }
-        TileTriangle* records = chunk_.records.reserve(sum);
+        TileTriangle* const records = chunk_.records.reserve(sum);
+        const TileTriangle* const special = scratch_.special.data();
         for (const BinScratch::Entry& e : scratch_.entries) {
-            TileTriangle& record = records[chunk_.offsets[e.tile]++];
-            if ((e.source & ~kSourceMask) == 0) {
-                record = recordOf(e.source);
-            } else {
-                record = specialRecord(e);
-            }
+            constexpr uint32_t kSpecial = TriangleBatch::kCapacity;
+            records[offsets[e.tile]++] =
+                e.source < kSpecial ? batch_.records[e.source] : special[e.source - kSpecial];
         }
         // Placing advanced every offset to the start of the next tile: shift back.
-        std::memmove(chunk_.offsets.data() + 1, chunk_.offsets.data(),
-                     (chunk_.offsets.size() - 1) * sizeof(uint32_t));
-        chunk_.offsets[0] = 0;
+        std::memmove(offsets + 1, offsets, (chunk_.offsets.size() - 1) * sizeof(uint32_t));
+        offsets[0] = 0;
     }
 
   private:
-    uint32_t firstTile(uint32_t i) const {
-        const uint32_t x = batch_.tile[i] & 0xFFFF, y = batch_.tile[i] >> 16;
-        return (y - uint32_t(chunk_.rect.y0)) * uint32_t(chunk_.rect.width()) + x -
-               uint32_t(chunk_.rect.x0);
+    uint32_t tileOf(uint32_t place) const {
+        return (place >> 8) * width_ + (place & 0xFF) - first_;
     }
 
-    void addEntry(uint32_t tile, uint32_t source) {
+    void add(uint32_t tile, uint32_t source) {
         scratch_.entries.push_back({tile, source});
         ++chunk_.offsets[tile];
     }
 
-    TileTriangle recordOf(uint32_t i) const {
-        TileTriangle record;
-        std::memcpy(static_cast<void*>(&record), batch_.head + i, sizeof(TriangleBatch::Head));
-        std::memcpy(reinterpret_cast<char*>(&record) + sizeof(TriangleBatch::Head), batch_.rest + i,
-                    sizeof(TriangleBatch::Rest));
-        return record;
+    TileTriangle& addSpecial(uint32_t tile) {
+        add(tile, TriangleBatch::kCapacity + uint32_t(scratch_.special.size()));
+        return scratch_.special.emplace_back();
     }
 
-    /// Relative to the tile `right` and `below` the first one, which it touches.
-    TileTriangle severalRecord(uint32_t i, int right, int below) const {
-        TileTriangle record = recordOf(i);
-        for (Corner16& c : record.corner) {
-            c.x_fx8 = int16_t(c.x_fx8 - right * kTileFx8);
-            c.y_fx8 = int16_t(c.y_fx8 - below * kTileFx8);
-        }
-        const auto clampToTile = [](uint8_t& low, uint8_t& high, int tiles) {
-            low = tiles > 0 ? 0 : low;
-            high = uint8_t(std::min(high - tiles * kTileSize, kTileSize - 1));
-        };
-        clampToTile(record.x0, record.x1, right);
-        clampToTile(record.y0, record.y1, below);
-        record.id &= ~kSeveralTiles;
-        return record;
-    }
-
-    void listSeveral(uint32_t i) {
-        const TriangleBatch::Rest& r = batch_.rest[i];
-        const int right = r.x1 >> kTileShift, below = r.y1 >> kTileShift;
-        const uint32_t tile = firstTile(i);
+    /// `tile` is the first one of those that the triangle touches, two in a row at most.
+    void addSeveral(uint32_t i, uint32_t tile) {
+        const TileTriangle& t = batch_.records[i];
+        const int right = t.x1 >> kTileShift, below = t.y1 >> kTileShift;
+        const bool test_edges = right > 0 && below > 0;
         for (int y = 0; y <= below; ++y) {
             for (int x = 0; x <= right; ++x) {
-                if (right > 0 && below > 0 &&
-                    outsideAnEdge(expand(severalRecord(i, x, y), 0, 0), 0, 0)) {
+                if (test_edges && outsideAnEdge(expand(t, 0, 0), x * kTileSize, y * kTileSize)) {
                     continue;
                 }
-                addEntry(tile + uint32_t(y * chunk_.rect.width() + x),
-                         i | kSourceSeveral | (x > 0 ? kTileRight : 0) | (y > 0 ? kTileBelow : 0));
+                TileTriangle& record = addSpecial(tile + uint32_t(y) * width_ + uint32_t(x));
+                record = t;
+                for (Corner16& c : record.corner) {
+                    c.x_fx8 = int16_t(c.x_fx8 - x * kTileFx8);
+                    c.y_fx8 = int16_t(c.y_fx8 - y * kTileFx8);
+                }
+                record.x0 = x > 0 ? 0 : t.x0;
+                record.y0 = y > 0 ? 0 : t.y0;
+                record.x1 = uint8_t(std::min(t.x1 - x * kTileSize, kTileSize - 1));
+                record.y1 = uint8_t(std::min(t.y1 - y * kTileSize, kTileSize - 1));
             }
         }
     }
 
-    void listWide(uint32_t i) {
+    void addWide(uint32_t i) {
         const SetupTriangle& t = chunk_.wide[i];
-        const TileRect tiles = tilesOf(pixelBox(t, view_.width, view_.height));
+        const PixelBox box = scratch_.wide_boxes[i];
+        const TileRect tiles = tilesOf(box);
         const bool test_edges = tiles.x1 > tiles.x0 && tiles.y1 > tiles.y0;
         for (int y = tiles.y0; y <= tiles.y1; ++y) {
             for (int x = tiles.x0; x <= tiles.x1; ++x) {
-                if (test_edges && outsideAnEdge(t, x << kTileShift, y << kTileShift)) {
+                if (test_edges && outsideAnEdge(t, x * kTileSize, y * kTileSize)) {
                     continue;
                 }
-                addEntry(uint32_t((y - chunk_.rect.y0) * chunk_.rect.width() + x - chunk_.rect.x0),
-                         i | kSourceWide);
+                TileTriangle& record = addSpecial(uint32_t(y) * width_ + uint32_t(x) - first_);
+                record.x0 = uint8_t(std::max(box.x0 - x * kTileSize, 0));
+                record.y0 = uint8_t(std::max(box.y0 - y * kTileSize, 0));
+                record.x1 = uint8_t(std::min(box.x1 - x * kTileSize, kTileSize - 1));
+                record.y1 = uint8_t(std::min(box.y1 - y * kTileSize, kTileSize - 1));
+                record.id = i | kWide | (t.swapped != 0 ? kSwapped : 0);
             }
         }
     }
 
-    TileTriangle specialRecord(const BinScratch::Entry& e) const {
-        const uint32_t i = e.source & kSourceMask;
-        if ((e.source & kSourceWide) == 0) {
-            return severalRecord(i, (e.source & kTileRight) != 0, (e.source & kTileBelow) != 0);
-        }
-        const SetupTriangle& t = chunk_.wide[i];
-        const int x = int(e.tile) % chunk_.rect.width() + chunk_.rect.x0;
-        const int y = int(e.tile) / chunk_.rect.width() + chunk_.rect.y0;
-        const PixelBox box = pixelBox(t, view_.width, view_.height);
-        TileTriangle record{};
-        record.x0 = uint8_t(std::max(box.x0 - x * kTileSize, 0));
-        record.y0 = uint8_t(std::max(box.y0 - y * kTileSize, 0));
-        record.x1 = uint8_t(std::min(box.x1 - x * kTileSize, kTileSize - 1));
-        record.y1 = uint8_t(std::min(box.y1 - y * kTileSize, kTileSize - 1));
-        record.id = i | kWide | (t.swapped != 0 ? kSwapped : 0);
-        return record;
-    }
-
-    const FrameView& view_;
     const TriangleBatch& batch_;
     BinScratch& scratch_;
     Chunk& chunk_;
+    uint32_t width_ = 0, first_ = 0;  ///< of the rectangle; tile (0, 0) would be number −first_
 };
 
 }  // namespace
@@ -286,6 +251,8 @@ void binChunk(const ChunkInput& input, const FrameView& view, const GeometryKern
     chunk.wide.clear();
     chunk.clips.clear();
     scratch.entries.clear();
+    scratch.special.clear();
+    scratch.wide_boxes.clear();
     scratch.wide_ends.clear();
 
     TriangleBatch& batch = scratch.batch;
@@ -298,19 +265,19 @@ void binChunk(const ChunkInput& input, const FrameView& view, const GeometryKern
                            .height = view.height},
                           batch);
     uint32_t compact = batch.count;
-    if ((batch.flags & kWide) != 0) {
+    if ((batch.flags & TriangleBatch::kWidePlace) != 0) {
         WideSetup setup(input, view, scratch, chunk);
         for (uint32_t i = 0; i < batch.count; ++i) {
-            if ((batch.rest[i].id & kWide) != 0) {
-                setup.add(batch.rest[i].id & kTriangleMask);
+            if ((batch.place[i] & TriangleBatch::kWidePlace) != 0) {
+                setup.add(batch.records[i].id & kTriangleMask);
                 scratch.wide_ends.push_back(uint32_t(chunk.wide.size()));
                 --compact;
             }
         }
     }
-    TileSort sort(view, scratch, chunk);
+    TileSort sort(scratch, chunk);
     if (sort.bound()) {
-        sort.listEntries();
+        sort.list();
         sort.placeRecords();
     }
     scratch.counters.triangles += input.count;

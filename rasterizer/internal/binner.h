@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rasterizer/internal/kernels.h"
+#include "rasterizer/internal/triangle_setup.h"
 #include "rasterizer/rasterizer.h"
 
 namespace still::internal {
@@ -78,15 +79,17 @@ struct FrameBins {
 
 /// Scratch of one worker.
 struct BinScratch {
-    /// A record to be made: of one triangle in one tile.
+    /// A record in a tile of the chunk's rectangle.
     struct Entry {
-        uint32_t tile;    ///< in the chunk's rectangle
-        uint32_t source;  ///< see binner.cpp
+        uint32_t tile;
+        uint32_t source;  ///< in the batch, or from kCapacity on in `special`
     };
     TriangleBatch batch;
     std::vector<Entry> entries;
-    std::vector<uint32_t>
-        wide_ends;            ///< where the triangles of each wide source end in Chunk::wide
+    std::vector<TileTriangle> special;  ///< records of triangles that touch several tiles
+    /// Of Chunk::wide: bounds, and where the triangles of each wide source end.
+    std::vector<PixelBox> wide_boxes;
+    std::vector<uint32_t> wide_ends;
     RasterCounters counters;  ///< sums over the chunks of this worker
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/internal/matrix.h"
 #include "rasterizer/simd.h"
@@ -111,33 +112,23 @@ struct TriangleJob {
     int width = 0, height = 0;               ///< of the picture
 };
 
-/// More bits of an id, for the binner only.
-constexpr uint32_t kSeveralTiles = 1u << 18;
-
 /// What is left of a chunk's triangles, in their order: those that have a sample within their
 /// bounds and the picture, and an area, except that wide ones are yet to be set up. Coordinates and
-/// box are relative to the first tile that the triangle touches; of wide ones only `id` is
-/// specified, with the triangle in the chunk.
+/// box are relative to the first tile that the triangle touches, and the box may reach beyond it;
+/// of wide ones only `id` is specified, with the triangle in the chunk.
 struct TriangleBatch {
     static constexpr uint32_t kCapacity = kChunkTriangles + 16;  ///< whole vectors are stored
-    /// The record's halves, each 16 bytes; the box may reach beyond the tile.
-    struct alignas(16) Head {
-        Corner16 corner[3];
-        float z0;
-    };
-    struct alignas(16) Rest {
-        float z1, z2;
-        uint8_t x0, y0, x1, y1;
-        uint32_t id;
-    };
-    Head head[kCapacity];
-    Rest rest[kCapacity];
-    alignas(64) uint32_t tile[kCapacity];  ///< first tile, x + 65536 · y
+    /// Bits of `place`; without any the lower half is the first tile, x + 256 · y.
+    static constexpr uint32_t kSeveralTiles = 1u << 16, kWidePlace = 1u << 17;
+
+    TileTriangle records[kCapacity];
+    alignas(64) uint32_t place[kCapacity];
     uint32_t count = 0;
-    uint32_t flags = 0;  ///< union of the ids' upper halves
+    uint32_t flags = 0;  ///< union of the upper halves of `place`
     /// Rectangle of tiles that the compact ones touch, inclusive; empty without any.
     int32_t tile_x0 = 0, tile_y0 = 0, tile_x1 = 0, tile_y1 = 0;
 };
+static_assert(kMaxTargetSize / kTileSize <= 256);
 
 struct GeometryKernels {
     void (*transformVertices)(const VertexJob& job, int begin, int end);

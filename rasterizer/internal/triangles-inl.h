@@ -4,7 +4,7 @@
 //     3 × 16 bytes per triangle, transposed      x y z of corner 0, 1, 2
 //       → box of samples empty? no area? → out
 //       → orient, make relative to the first tile
-//       → the lanes that are left, packed together (compress), as two 16-byte halves of a record
+//       → the lanes that are left, packed together (compress), as records
 
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
@@ -173,7 +173,6 @@ class BatchLanes {
         TriVec id = hn::Iota(d, int32_t(first));
         id = hn::Or(id, hn::IfThenElseZero(swapped, all(int32_t{kSwapped})));
         id = hn::Or(id, hn::IfThenElseZero(wide, all(int32_t{kWide})));
-        id = hn::Or(id, hn::IfThenElseZero(several, all(int32_t{kSeveralTiles})));
 
         constexpr int kTileFx8 = kTileShift + kSubpixelBits;
         const TriVec left = hn::ShiftLeft<kTileFx8>(tx), top = hn::ShiftLeft<kTileFx8>(ty);
@@ -190,9 +189,13 @@ class BatchLanes {
             hn::Or(hn::Or(hn::Sub(x0, px), hn::ShiftLeft<8>(hn::Sub(y0, py))),
                    hn::Or(hn::ShiftLeft<16>(hn::Sub(x1, px)), hn::ShiftLeft<24>(hn::Sub(y1, py))));
         word[7] = id;
-        store(word, hn::Or(tx, hn::ShiftLeft<16>(ty)), kept);
+        TriVec place = hn::Or(tx, hn::ShiftLeft<8>(ty));
+        place =
+            hn::Or(place, hn::IfThenElseZero(several, all(int32_t{TriangleBatch::kSeveralTiles})));
+        place = hn::IfThenElse(wide, all(int32_t{TriangleBatch::kWidePlace}), place);
+        store(word, place, kept);
 
-        flags_ = hn::Or(flags_, hn::IfThenElseZero(kept, id));
+        flags_ = hn::Or(flags_, hn::IfThenElseZero(kept, place));
         const TriVec most = all(INT32_MAX), least = all(-1);
         tile_x0_ = hn::Min(tile_x0_, hn::IfThenElse(compact, tx, most));
         tile_y0_ = hn::Min(tile_y0_, hn::IfThenElse(compact, ty, most));
@@ -207,7 +210,7 @@ class BatchLanes {
         batch_.count = count_;
         batch_.flags = 0;
         for (uint32_t flags : lanes) {
-            batch_.flags |= flags & ~kTriangleMask;
+            batch_.flags |= flags & ~0xFFFFu;
         }
         batch_.tile_x0 = hn::GetLane(hn::MinOfLanes(d, tile_x0_));
         batch_.tile_y0 = hn::GetLane(hn::MinOfLanes(d, tile_y0_));
@@ -230,15 +233,42 @@ class BatchLanes {
                 hn::IfThenElse(mask, a.z, b.z)};
     }
 
-    HWY_INLINE void store(const TriVec word[8], TriVec tile, TriMask kept) {
+    HWY_INLINE void store(const TriVec word[8], TriVec place, TriMask kept) {
         const TriTag d;
         const LanePacking pack(kept);
-        hn::StoreInterleaved4(pack(word[0]), pack(word[1]), pack(word[2]), pack(word[3]), d,
-                              reinterpret_cast<int32_t*>(batch_.head + count_));
-        hn::StoreInterleaved4(pack(word[4]), pack(word[5]), pack(word[6]), pack(word[7]), d,
-                              reinterpret_cast<int32_t*>(batch_.rest + count_));
-        hn::StoreU(pack(tile), d, reinterpret_cast<int32_t*>(batch_.tile + count_));
+        storeHalves(pack(word[0]), pack(word[1]), pack(word[2]), pack(word[3]), 0);
+        storeHalves(pack(word[4]), pack(word[5]), pack(word[6]), pack(word[7]), 16);
+        hn::StoreU(pack(place), d, reinterpret_cast<int32_t*>(batch_.place + count_));
         count_ += uint32_t(hn::CountTrue(d, kept));
+    }
+
+    /// Four words of each record, `offset` bytes from its start.
+    HWY_INLINE void storeHalves(TriVec w0, TriVec w1, TriVec w2, TriVec w3, size_t offset) {
+        const TriTag d;
+        const hn::RepartitionToWide<TriTag> dw;
+        const auto low01 = hn::BitCast(dw, hn::InterleaveLower(d, w0, w1));
+        const auto low23 = hn::BitCast(dw, hn::InterleaveLower(d, w2, w3));
+        const auto high01 = hn::BitCast(dw, hn::InterleaveUpper(d, w0, w1));
+        const auto high23 = hn::BitCast(dw, hn::InterleaveUpper(d, w2, w3));
+        char* to = reinterpret_cast<char*>(batch_.records + count_) + offset;
+        constexpr size_t kStep = sizeof(TileTriangle);
+        storeBlocks(d, hn::BitCast(d, hn::InterleaveLower(dw, low01, low23)), to);
+        storeBlocks(d, hn::BitCast(d, hn::InterleaveUpper(dw, low01, low23)), to + kStep);
+        storeBlocks(d, hn::BitCast(d, hn::InterleaveLower(dw, high01, high23)), to + 2 * kStep);
+        storeBlocks(d, hn::BitCast(d, hn::InterleaveUpper(dw, high01, high23)), to + 3 * kStep);
+    }
+
+    /// Blocks of 16 bytes into every fourth record.
+    template <class D>
+    static HWY_INLINE void storeBlocks(D d, hn::Vec<D> v, char* to) {
+        if constexpr (hn::MaxLanes(D()) == 4) {
+            hn::StoreU(v, d, reinterpret_cast<int32_t*>(to));
+        } else {
+            const hn::Half<D> half;
+            storeBlocks(half, hn::LowerHalf(half, v), to);
+            storeBlocks(half, hn::UpperHalf(half, v),
+                        to + hn::MaxLanes(half) * sizeof(TileTriangle));
+        }
     }
 
     const TriangleJob& job_;

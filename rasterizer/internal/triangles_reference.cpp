@@ -50,9 +50,7 @@ class BatchBuilder {
         if (placed) {
             addPlaced(v, triangle);
         } else {
-            addRecord(
-                {}, {.z1 = 0, .z2 = 0, .x0 = 0, .y0 = 0, .x1 = 0, .y1 = 0, .id = triangle | kWide},
-                0);
+            addWide(triangle);
         }
     }
 
@@ -73,9 +71,7 @@ class BatchBuilder {
             return;
         }
         if (max_x - min_x > kCompactExtentFx8 || max_y - min_y > kCompactExtentFx8) {
-            addRecord(
-                {}, {.z1 = 0, .z2 = 0, .x0 = 0, .y0 = 0, .x1 = 0, .y1 = 0, .id = triangle | kWide},
-                0);
+            addWide(triangle);
             return;
         }
         const int32_t area2 = (v[1].x_fx8 - v[0].x_fx8) * (v[2].y_fx8 - v[0].y_fx8) -
@@ -90,30 +86,36 @@ class BatchBuilder {
         }
         const int tx = x0 >> kTileShift, ty = y0 >> kTileShift;
         const int tx1 = x1 >> kTileShift, ty1 = y1 >> kTileShift;
-        id |= tx1 != tx || ty1 != ty ? kSeveralTiles : 0;
-        TriangleBatch::Head head{};
+        TileTriangle record{};
         for (int k = 0; k < 3; ++k) {
-            head.corner[k] = {int16_t(v[k].x_fx8 - tx * kTileSize * kSubpixelOne),
-                              int16_t(v[k].y_fx8 - ty * kTileSize * kSubpixelOne)};
+            record.corner[k] = {int16_t(v[k].x_fx8 - tx * kTileSize * kSubpixelOne),
+                                int16_t(v[k].y_fx8 - ty * kTileSize * kSubpixelOne)};
+            record.z[k] = v[k].z;
         }
-        head.z0 = v[0].z;
-        const auto local = [](int pixel, int tile) { return uint8_t(pixel - tile * kTileSize); };
-        addRecord(head,
-                  {v[1].z, v[2].z, local(x0, tx), local(y0, ty), local(x1, tx), local(y1, ty), id},
-                  uint32_t(tx | ty << 16));
+        record.x0 = uint8_t(x0 - tx * kTileSize);
+        record.y0 = uint8_t(y0 - ty * kTileSize);
+        record.x1 = uint8_t(x1 - tx * kTileSize);
+        record.y1 = uint8_t(y1 - ty * kTileSize);
+        record.id = id;
+        const bool several = tx1 != tx || ty1 != ty;
+        addRecord(record, uint32_t(tx | ty << 8) | (several ? TriangleBatch::kSeveralTiles : 0));
         batch_.tile_x0 = std::min(batch_.tile_x0, tx);
         batch_.tile_y0 = std::min(batch_.tile_y0, ty);
         batch_.tile_x1 = std::max(batch_.tile_x1, tx1);
         batch_.tile_y1 = std::max(batch_.tile_y1, ty1);
     }
 
-    void addRecord(const TriangleBatch::Head& head, const TriangleBatch::Rest& rest,
-                   uint32_t tile) {
-        batch_.head[batch_.count] = head;
-        batch_.rest[batch_.count] = rest;
-        batch_.tile[batch_.count] = tile;
+    void addWide(uint32_t triangle) {
+        TileTriangle record{};
+        record.id = triangle | kWide;
+        addRecord(record, TriangleBatch::kWidePlace);
+    }
+
+    void addRecord(const TileTriangle& record, uint32_t place) {
+        batch_.records[batch_.count] = record;
+        batch_.place[batch_.count] = place;
         ++batch_.count;
-        batch_.flags |= rest.id & ~kTriangleMask;
+        batch_.flags |= place & ~0xFFFFu;
     }
 
     const TriangleJob& job_;
