@@ -64,6 +64,10 @@ FrameHashes hashFrame(ImageView<const Rgb8> output, const GBuffer& gbuffer) {
     return hashes;
 }
 
+uint64_t hashBytes(std::string_view bytes, uint64_t before) {
+    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), before);
+}
+
 std::string hex(uint64_t hash) {
     std::string text(16, '0');
     for (int digit = 15; digit >= 0; --digit, hash >>= 4) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "postfx/taa.h"
 #include "rasterizer/gbuffer.h"
@@ -21,6 +22,9 @@ struct FrameHashes {
 /// Planes that do not exist hash to 0. `color` covers red, green and blue of the G-buffer, `motion`
 /// the motion and the previous depth.
 FrameHashes hashFrame(ImageView<const Rgb8> output, const GBuffer& gbuffer);
+
+/// Hash of bytes that follow others whose hash is `before`. Depends on where the cuts are.
+uint64_t hashBytes(std::string_view bytes, uint64_t before = 0);
 
 /// 16 hexadecimal digits.
 std::string hex(uint64_t hash);

@@ -10,7 +10,11 @@ namespace still {
 
 /// Loads NAME.obj (framed by its projected bounds, default light) or NAME.json (scene file).
 /// Colour textures are decoded from sRGB and get mip chains built in linear light.
-Result<Scene> loadScene(const std::filesystem::path& file);
+/// With a `cache_folder`, models of a megabyte and more are kept there, as they are in memory, and
+/// taken from there the next time, unless a file that they are made of or the program has changed.
+/// Scene and warnings are the same; a folder that cannot be used costs time only.
+Result<Scene> loadScene(const std::filesystem::path& file,
+                        const std::filesystem::path& cache_folder = {});
 
 /// Loads {"width":W,"height":H,"frames":[{"view":[16],"proj":[16],"jitter":[x,y]}…]}: column-major,
 /// OpenGL clip space, proj unjittered, jitter in pixels = sample offset from the pixel centre, x to

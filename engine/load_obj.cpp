@@ -5,9 +5,11 @@
 #include <cmath>
 #include <exception>
 #include <map>
-#include <span>
+#include <optional>
 #include <utility>
 
+#include "engine/internal/input_log.h"
+#include "engine/internal/model_cache.h"
 #include "engine/internal/mtl_parse.h"
 #include "engine/internal/mtl_textures.h"
 #include "engine/internal/normals.h"
@@ -38,10 +40,19 @@ bool isDegenerate(const Vector3f& a, const Vector3f& b, const Vector3f& c) {
 }
 
 void cutFace(const ObjFile& file, uint32_t begin, uint32_t end, CutFaces& out) {
+    const auto position = [&](uint32_t corner) -> const Vector3f& {
+        return file.positions[size_t(file.corners[corner].position)];
+    };
+    if (end - begin == 3) {
+        if (!isDegenerate(position(begin), position(begin + 1), position(begin + 2))) {
+            out.corners.insert(out.corners.end(), {begin, begin + 1, begin + 2});
+        }
+        return;
+    }
     std::vector<Vector3f> polygon;
     polygon.reserve(end - begin);
     for (uint32_t c = begin; c < end; ++c) {
-        polygon.push_back(file.positions[size_t(file.corners[c].position)]);
+        polygon.push_back(position(c));
     }
     std::vector<std::array<uint32_t, 3>> triangles;
     triangulatePolygon(polygon, triangles);
@@ -142,11 +153,11 @@ std::array<float, 2> texcoordOf(const ObjFile& file, uint32_t corner) {
 /// Fills indices and vertices: corners that agree in position, texture coordinates, normal and (in
 /// parts of normal-mapped materials) in handedness become one vertex, in order of first use.
 void shareVertices(const ObjFile& file, const CutFaces& cut, const std::vector<Vector3f>& normals,
-                   std::span<const Material> materials, Mesh& mesh) {
+                   const std::vector<bool>& normal_mapped, Mesh& mesh) {
     UniqueKeys<6> unique(file.positions.size());
     mesh.indices.reserve(cut.corners.size());
     for (const MeshPart& part : cut.parts) {
-        const bool mapped = materials[part.material].normal_texture != kNoTexture;
+        const bool mapped = normal_mapped[part.material];
         const uint32_t end = part.first_triangle + part.triangle_count;
         for (uint32_t t = part.first_triangle; t < end; ++t) {
             const uint32_t* corners = cut.corners.data() + size_t(t) * 3;
@@ -174,11 +185,6 @@ void shareVertices(const ObjFile& file, const CutFaces& cut, const std::vector<V
     }
 }
 
-bool isFile(const std::filesystem::path& path) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path, error);
-}
-
 /// Splits at blanks that are not behind a backslash.
 std::vector<std::string> escapedWords(const std::string& text) {
     std::vector<std::string> words{""};
@@ -196,17 +202,17 @@ std::vector<std::string> escapedWords(const std::string& text) {
 
 /// Files of one mtllib statement: one name, which may have blanks in it, or several names.
 std::vector<std::filesystem::path> libraryFiles(const std::filesystem::path& folder,
-                                                std::string statement) {
+                                                const std::string& statement, InputLog& log) {
     const auto withSlashes = [](std::string name) {
         std::replace(name.begin(), name.end(), '\\', '/');
         return name;
     };
-    if (isFile(folder / withSlashes(statement))) {
+    if (log.isFile(folder / withSlashes(statement))) {
         return {folder / withSlashes(statement)};
     }
     std::vector<std::filesystem::path> files;
     for (const std::string& word : escapedWords(statement)) {
-        if (isFile(folder / withSlashes(word))) {
+        if (log.isFile(folder / withSlashes(word))) {
             files.push_back(folder / withSlashes(word));
         }
     }
@@ -215,17 +221,17 @@ std::vector<std::filesystem::path> libraryFiles(const std::filesystem::path& fol
 
 using MaterialLibrary = std::map<std::string, MtlSource, std::less<>>;
 
-MaterialLibrary readLibraries(const std::filesystem::path& obj, const ObjFile& file,
+MaterialLibrary readLibraries(const std::filesystem::path& obj, const ObjFile& file, InputLog& log,
                               std::vector<std::string>& warnings) {
     MaterialLibrary library;
     for (const std::string& statement : file.libraries) {
-        const auto files = libraryFiles(obj.parent_path(), statement);
+        const auto files = libraryFiles(obj.parent_path(), statement, log);
         if (files.empty()) {
             warnings.push_back(shownPath(obj) + ": material library " + shownText(statement) +
                                ": no such file");
         }
         for (const std::filesystem::path& path : files) {
-            Result<std::string> text = readFile(path);
+            Result<std::string> text = log.read(path);
             if (!text) {
                 warnings.push_back(text.error().message);
                 continue;
@@ -284,33 +290,66 @@ bool anyClamped(const std::vector<MtlSource>& sources) {
     });
 }
 
-Result<ObjModel> buildModel(const std::filesystem::path& path, ObjFile file) {
+/// Everything of the mesh but the parts. `normal_mapped` goes by material.
+Mesh buildMesh(const ObjFile& file, const CutFaces& cut, const std::vector<bool>& normal_mapped) {
+    Mesh mesh;
+    shareVertices(file, cut, cornerNormals(file, cut), normal_mapped, mesh);
+    if (std::find(normal_mapped.begin(), normal_mapped.end(), true) != normal_mapped.end()) {
+        mesh.tangents = generateTangents(mesh);
+    }
+    return mesh;
+}
+
+Result<ObjModel> buildModel(const std::filesystem::path& path, ObjFile file, InputLog& log) {
     ObjModel model;
     model.warnings = std::move(file.warnings);
-    const MaterialLibrary library = readLibraries(path, file, model.warnings);
+    const MaterialLibrary library = readLibraries(path, file, log, model.warnings);
     std::vector<uint32_t> material_of_run;
     const std::vector<MtlSource> sources =
         usedMaterials(shownPath(path), file, library, material_of_run, model.warnings);
+    for (const MtlSource& source : sources) {
+        model.material_names.push_back(source.material.name);
+    }
     CutFaces cut = cutFaces(file, material_of_run);
     if (cut.corners.empty()) {
         return fail(shownPath(path) + ": no triangles, expected at least one face");
     }
-    MaterialSet set = buildMaterials(sources);
-    model.materials = std::move(set.materials);
-    for (const MtlSource& source : sources) {
-        model.material_names.push_back(source.material.name);
+    tameTexcoords(file.texcoords, !anyClamped(sources));
+    std::vector<bool> expected;
+    MaterialSet set = buildMaterials(sources, log, [&](const std::vector<bool>& normal_mapped) {
+        expected = normal_mapped;
+        model.mesh = buildMesh(file, cut, expected);
+    });
+    std::vector<bool> normal_mapped;
+    for (const Material& material : set.materials) {
+        normal_mapped.push_back(material.normal_texture != kNoTexture);
     }
+    if (normal_mapped != expected) {  // an image was broken
+        model.mesh = buildMesh(file, cut, normal_mapped);
+    }
+    model.mesh.parts = std::move(cut.parts);
+    model.materials = std::move(set.materials);
     model.textures = std::move(set.textures);
     model.alpha_textures = std::move(set.alpha_textures);
     model.warnings.insert(model.warnings.end(), set.warnings.begin(), set.warnings.end());
-    tameTexcoords(file.texcoords, !anyClamped(sources));
-    shareVertices(file, cut, cornerNormals(file, cut), model.materials, model.mesh);
-    model.mesh.parts = std::move(cut.parts);
-    if (std::any_of(model.materials.begin(), model.materials.end(),
-                    [](const Material& m) { return m.normal_texture != kNoTexture; })) {
-        model.mesh.tangents = generateTangents(model.mesh);
-    }
     return model;
+}
+
+Result<ObjModel> readModel(const std::filesystem::path& path, InputLog& log) {
+    try {
+        Result<std::string> text = log.read(path);
+        if (!text) {
+            return tl::make_unexpected(text.error());
+        }
+        Result<ObjFile> file = parseObj(std::move(*text), shownPath(path));
+        if (!file) {
+            return tl::make_unexpected(file.error());
+        }
+        return buildModel(path, std::move(*file), log);
+    } catch (const std::exception&) {
+        // The standard library's; nothing of ours throws.
+        return fail(shownPath(path) + ": not enough memory to load it");
+    }
 }
 
 void shift(int32_t& texture, size_t by) {
@@ -324,21 +363,21 @@ void moveBehind(std::vector<T>& to, std::vector<T>& from) {
 
 }  // namespace
 
-Result<ObjModel> loadObj(const std::filesystem::path& path) {
-    try {
-        Result<std::string> text = readFile(path);
-        if (!text) {
-            return tl::make_unexpected(text.error());
-        }
-        Result<ObjFile> file = parseObj(std::move(*text), shownPath(path));
-        if (!file) {
-            return tl::make_unexpected(file.error());
-        }
-        return buildModel(path, std::move(*file));
-    } catch (const std::exception&) {
-        // The standard library's; nothing of ours throws.
-        return fail(shownPath(path) + ": not enough memory to load it");
+Result<ObjModel> loadObj(const std::filesystem::path& path,
+                         const std::filesystem::path& cache_folder) {
+    InputLog log;
+    if (cache_folder.empty()) {
+        return readModel(path, log);
     }
+    const ModelCache cache(cache_folder, path);
+    if (std::optional<ObjModel> model = cache.load()) {
+        return std::move(*model);
+    }
+    Result<ObjModel> model = readModel(path, log);
+    if (model) {
+        cache.store(*model, log);
+    }
+    return model;
 }
 
 uint32_t appendModel(Scene& scene, ObjModel&& model, std::string name) {

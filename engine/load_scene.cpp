@@ -19,8 +19,9 @@ std::string lowerExtension(const std::filesystem::path& file) {
     return extension;
 }
 
-Result<Scene> sceneFromObj(const std::filesystem::path& file) {
-    Result<ObjModel> model = loadObj(file);
+Result<Scene> sceneFromObj(const std::filesystem::path& file,
+                           const std::filesystem::path& cache_folder) {
+    Result<ObjModel> model = loadObj(file, cache_folder);
     if (!model) {
         return tl::make_unexpected(model.error());
     }
@@ -42,12 +43,14 @@ Result<Scene> sceneFromObj(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<Scene> loadScene(const std::filesystem::path& file) {
+Result<Scene> loadScene(const std::filesystem::path& file,
+                        const std::filesystem::path& cache_folder) {
     const std::string extension = lowerExtension(file);
     if (extension != ".obj" && extension != ".json") {
         return fail(shownPath(file) + ": unknown kind of file, expected NAME.obj or NAME.json");
     }
-    Result<Scene> scene = extension == ".obj" ? sceneFromObj(file) : loadSceneFile(file);
+    Result<Scene> scene =
+        extension == ".obj" ? sceneFromObj(file, cache_folder) : loadSceneFile(file, cache_folder);
     if (scene && scene->automatic_camera) {
         frameScene(*scene, kPleasantDirection, kUsualAspect);
     }

@@ -114,10 +114,19 @@ void buildTexture(Build& build, ImageView<const Rgba8> image) {
     }
 }
 
+Result<Image<Rgba8>> readImage(const std::filesystem::path& file, InputLog& log) {
+    const Result<std::string> bytes = log.read(file);
+    if (!bytes) {
+        return tl::make_unexpected(bytes.error());
+    }
+    return decodeImage({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()},
+                       shownPath(file));
+}
+
 /// Decodes one image and makes all that is wanted of it. Runs on a worker, so it must not throw.
-void processImage(ImageFile& file, std::vector<Build>& builds) noexcept {
+void processImage(ImageFile& file, std::vector<Build>& builds, InputLog& log) noexcept {
     try {
-        const Result<Image<Rgba8>> image = loadImage(file.path);
+        const Result<Image<Rgba8>> image = readImage(file.path, log);
         if (!image) {
             file.error = image.error();
             return;
@@ -137,6 +146,8 @@ struct MaterialRequests {
 
 class Planner {
   public:
+    explicit Planner(InputLog& log) : log_(log) {}
+
     std::vector<ImageFile> images;
     std::vector<Build> builds;
     std::vector<std::string> warnings;
@@ -166,6 +177,7 @@ class Planner {
         }
     }
 
+    InputLog& log_;
     std::map<std::filesystem::path, size_t> image_numbers_;
     std::map<std::pair<size_t, Request>, int32_t> build_numbers_;
     std::set<std::string> warned_;
@@ -210,8 +222,7 @@ std::optional<std::filesystem::path> Planner::find(const MtlSource& source, cons
     const std::string bare(trimmed(std::string_view(name).substr(0, name.find(" -"))));
     for (const std::filesystem::path& candidate :
          {folder / name, folder / bare, folder / std::filesystem::path(bare).filename()}) {
-        std::error_code error;
-        if (std::filesystem::is_regular_file(candidate, error)) {
+        if (log_.isFile(candidate)) {
             return candidate.lexically_normal();
         }
     }
@@ -257,21 +268,36 @@ void collect(std::vector<Build>& builds, MaterialSet& set) {
 
 }  // namespace
 
-MaterialSet buildMaterials(std::span<const MtlSource> sources) {
-    Planner planner;
+MaterialSet buildMaterials(std::span<const MtlSource> sources, InputLog& log,
+                           const std::function<void(const std::vector<bool>&)>& meanwhile) {
+    Planner planner(log);
     std::vector<MaterialRequests> wanted;
+    std::vector<bool> normal_mapped;
     for (const MtlSource& source : sources) {
         wanted.push_back(planner.plan(source));
+        normal_mapped.push_back(wanted.back().normal != kNoRequest);
     }
     constexpr int kMaxThreads = 8;  // each holds a decoded image
-    const int images = int(planner.images.size());
-    Workers workers(std::clamp(int(std::thread::hardware_concurrency()), 1,
-                               std::clamp(images, 1, kMaxThreads)));
-    workers.parallelFor(images, 1, [&](int begin, int end, int) {
+    const int tasks = int(planner.images.size()) + 1;
+    Workers workers(
+        std::clamp(int(std::thread::hardware_concurrency()), 1, std::min(tasks, kMaxThreads)));
+    std::exception_ptr thrown;
+    workers.parallelFor(tasks, 1, [&](int begin, int end, int) {
         for (int i = begin; i < end; ++i) {
-            processImage(planner.images[size_t(i)], planner.builds);
+            if (i > 0) {
+                processImage(planner.images[size_t(i - 1)], planner.builds, log);
+                continue;
+            }
+            try {
+                meanwhile ? meanwhile(normal_mapped) : void();
+            } catch (...) {
+                thrown = std::current_exception();
+            }
         }
     });
+    if (thrown) {
+        std::rethrow_exception(thrown);
+    }
     MaterialSet set;
     set.warnings = std::move(planner.warnings);
     for (const ImageFile& image : planner.images) {

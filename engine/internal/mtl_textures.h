@@ -2,10 +2,12 @@
 // Materials as the rasterizer wants them, from MTL blocks and the images they name.
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "engine/internal/input_log.h"
 #include "engine/internal/mtl_parse.h"
 #include "rasterizer/draw_list.h"
 
@@ -30,6 +32,10 @@ struct MaterialSet {
 ///  - Alpha: map_d (its alpha channel where that is used, else its luminance), otherwise the alpha
 ///    channel of map_Kd; none when everything is opaque.
 ///  - Relief: `norm` is a normal map; `bump` is a height map when it is grey, else a normal map.
-MaterialSet buildMaterials(std::span<const MtlSource> sources);
+/// `meanwhile`, if any, is called once, by one of the threads, with what is known before images are
+/// read: which sources have an image for a normal map. What it throws is passed on.
+MaterialSet buildMaterials(
+    std::span<const MtlSource> sources, InputLog& log,
+    const std::function<void(const std::vector<bool>& normal_mapped)>& meanwhile = {});
 
 }  // namespace still

@@ -27,8 +27,10 @@ struct ObjModel {
 /// Refused with an Error: a file that cannot be read, has no triangle, has a coordinate that is not
 /// finite (or beyond ±1e18), or a face with a vertex that does not exist. Everything else that is
 /// odd (missing libraries and images, unknown materials, broken texture coordinates or normals)
-/// becomes a warning and a usable model.
-Result<ObjModel> loadObj(const std::filesystem::path& file);
+/// becomes a warning and a usable model. With a `cache_folder` (see load.h), what stands there is
+/// taken instead when it is the same.
+Result<ObjModel> loadObj(const std::filesystem::path& file,
+                         const std::filesystem::path& cache_folder = {});
 
 /// Moves the model's assets to the end of the scene's, with indices adjusted, and returns the
 /// number of its mesh. Adds no object.

@@ -1,10 +1,9 @@
-// OBJ and MTL statements through tinyobjloader, which is kept away from what it gets wrong:
+// OBJ statements through tinyobjloader, which is kept away from what it gets wrong:
 //  - numbers: its parser uses the C library's pow(), whose last bit depends on the machine, and
 //    takes "nan" and other words for 0; here they are parsed by parseNumber();
 //  - polygons: LoadObj() keeps a face's size in a byte and triangulates concave faces wrongly;
 //    LoadObjWithCallback() hands out whole faces;
-//  - mtllib: it stops at the first library of several, and treats backslashes in paths as escapes;
-//  - map statements: after -s, -o and -t it eats up to three words, numbers or not.
+//  - mtllib: it stops at the first library of several, and treats backslashes in paths as escapes.
 
 #include "engine/internal/obj_parse.h"
 
@@ -14,12 +13,10 @@
 #include <istream>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <streambuf>
 #include <string_view>
 #include <utility>
 
-#include "engine/internal/mtl_parse.h"
 #include "engine/internal/obj_text.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -28,13 +25,6 @@
 namespace still {
 
 namespace {
-
-constexpr double kMaxCoordinate = 1e18;
-
-bool startsStatement(std::string_view line, std::string_view keyword) {
-    return line.size() > keyword.size() && line.starts_with(keyword) &&
-           (line[keyword.size()] == ' ' || line[keyword.size()] == '\t');
-}
 
 /// Counts warnings of one kind, so that a file with a million of them gives one line.
 struct Tally {
@@ -72,6 +62,7 @@ class ObjSource : public std::streambuf {
     void readPosition(std::string_view line);
     void readTexcoord(std::string_view line);
     void readNormal(std::string_view line);
+    bool readPlainFace(std::string_view line);
     bool prepareFace(char* begin, char* end);
     int32_t resolve(int index, size_t count) const;
     void startRun();
@@ -85,6 +76,7 @@ class ObjSource : public std::streambuf {
     int32_t material_ = kNoIndex;
     bool new_run_ = true;
     std::map<std::string, int32_t, std::less<>> material_numbers_;
+    std::vector<tinyobj::index_t> plain_face_;  ///< of the line that is being read
     Tally small_faces_, points_and_lines_, bad_texcoords_, bad_normals_, missing_attributes_;
 };
 
@@ -111,7 +103,8 @@ bool ObjSource::passOn(char* begin, std::string_view line) {
     } else if (startsStatement(line, "vn")) {
         readNormal(line.substr(2));
     } else if (startsStatement(line, "f")) {
-        return prepareFace(begin, begin + (line.data() - begin) + line.size());
+        return !readPlainFace(line.substr(1)) &&
+               prepareFace(begin, begin + (line.data() - begin) + line.size());
     } else if (startsStatement(line, "mtllib")) {
         file.libraries.emplace_back(trimmed(line.substr(6)));
     } else if (startsStatement(line, "l") || startsStatement(line, "p")) {
@@ -145,7 +138,7 @@ void ObjSource::readPosition(std::string_view line) {
         if (!number) {
             return stop(vertex + ": \"" + shownText(word) + "\", expected three numbers");
         }
-        if (!(std::abs(*number) <= kMaxCoordinate)) {
+        if (!(std::abs(*number) <= kMaxObjNumber)) {
             return stop(vertex + " is not finite (" + shownText(word) +
                         "), expected coordinates within ±1e18");
         }
@@ -173,7 +166,7 @@ void ObjSource::readNormal(std::string_view line) {
     std::array<float, 3> normal{};
     for (float& component : normal) {
         const double number = parseNumber(takeWord(line)).value_or(NAN);
-        if (!(std::abs(number) <= kMaxCoordinate)) {
+        if (!(std::abs(number) <= kMaxObjNumber)) {
             bad_normals_.add(line_);
             normal = {};
             break;
@@ -181,6 +174,64 @@ void ObjSource::readNormal(std::string_view line) {
         component = float(number);
     }
     file.normals.push_back(normal);
+}
+
+/// Takes an index of at most 9 digits off the front of `text`; false when there is none.
+bool takeIndex(std::string_view& text, int& index) {
+    constexpr size_t kMaxDigits = 9;
+    const bool negative = text.starts_with('-');
+    size_t at = negative ? 1 : 0;
+    const size_t begin = at;
+    int value = 0;
+    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; ++at) {
+        if (at - begin == kMaxDigits) {
+            return false;
+        }
+        value = value * 10 + (text[at] - '0');
+    }
+    index = negative ? -value : value;
+    text.remove_prefix(at);
+    return at > begin;
+}
+
+/// Takes "1", "1/2", "1//3" or "1/2/3" and the blanks behind it off the front of `line`; false when
+/// it reads otherwise.
+bool takePlainCorner(std::string_view& line, tinyobj::index_t& corner) {
+    corner = {0, 0, 0};
+    if (!takeIndex(line, corner.vertex_index)) {
+        return false;
+    }
+    for (int* index : {&corner.texcoord_index, &corner.normal_index}) {
+        if (!line.starts_with('/')) {
+            break;
+        }
+        line.remove_prefix(1);
+        const bool left_out = index == &corner.texcoord_index && line.starts_with('/');
+        if (!left_out && !takeIndex(line, *index)) {
+            return false;
+        }
+    }
+    if (!line.empty() && line[0] != ' ' && line[0] != '\t') {
+        return false;
+    }
+    while (!line.empty() && (line[0] == ' ' || line[0] == '\t')) {
+        line.remove_prefix(1);
+    }
+    return true;
+}
+
+/// Almost all faces are plain, and tinyobjloader takes several times as long for them. False: this
+/// one is for it.
+bool ObjSource::readPlainFace(std::string_view line) {
+    line = trimmed(line);
+    plain_face_.clear();
+    while (!line.empty()) {
+        if (!takePlainCorner(line, plain_face_.emplace_back())) {
+            return false;
+        }
+    }
+    onFace(plain_face_.data(), int(plain_face_.size()));
+    return true;
 }
 
 /// Blanks out a comment behind the corners and refuses numbers that do not fit an int: atoi() is
@@ -274,162 +325,7 @@ tinyobj::callback_t callbacks() {
     return calls;
 }
 
-/// Moves `count` words from `rest` to `out`.
-void copyWords(std::string& out, std::string_view& rest, int count) {
-    for (int i = 0; i < count; ++i) {
-        out.append(takeWord(rest)).push_back(' ');
-    }
-}
-
-/// An image statement with the numbers after -s, -o and -t filled up to three.
-std::string withFullOptions(std::string_view line) {
-    std::string out;
-    copyWords(out, line, 1);
-    while (true) {
-        std::string_view rest = line;
-        const std::string_view word = takeWord(rest);
-        if (word.size() < 2 || word[0] != '-') {
-            return out.append(trimmed(line));
-        }
-        copyWords(out, line, 1);
-        if (word != "-s" && word != "-o" && word != "-t") {
-            copyWords(out, line, word == "-mm" ? 2 : 1);
-            continue;
-        }
-        for (int i = 0; i < 3; ++i) {
-            rest = line;
-            if (parseNumber(takeWord(rest))) {
-                copyWords(out, line, 1);
-            } else {
-                out.append(word == "-s" ? "1 " : "0 ");
-            }
-        }
-    }
-}
-
-MtlImage imageOf(const std::string& name, const tinyobj::texture_option_t& options) {
-    MtlImage image;
-    image.file = std::string(trimmed(name));
-    image.clamp = options.clamp;
-    image.bump_scale = std::isfinite(options.bump_multiplier)
-                           ? std::clamp(options.bump_multiplier, -1000.0f, 1000.0f)
-                           : 1.0f;
-    for (int i = 0; i < 3; ++i) {
-        image.moved |= options.scale[i] != 1.0f || options.origin_offset[i] != 0.0f ||
-                       options.turbulence[i] != 0.0f;
-    }
-    return image;
-}
-
-/// The numbers of one newmtl block.
-struct MtlNumbers {
-    std::string name;
-    std::optional<std::array<float, 3>> kd, ks, ke;
-    std::optional<float> ns, d, tr;
-};
-
-/// `count` numbers; one alone stands for all. Nothing, and a warning, when they are not finite.
-std::optional<std::array<float, 3>> readNumbers(std::string_view line, int count,
-                                                const std::string& where,
-                                                std::vector<std::string>& warnings) {
-    std::array<float, 3> values{};
-    for (int i = 0; i < count; ++i) {
-        const std::string_view word = takeWord(line);
-        const bool alone = i == 1 && word.empty();
-        const double number = parseNumber(word).value_or(NAN);
-        if (alone) {
-            return std::array<float, 3>{values[0], values[0], values[0]};
-        }
-        if (!(std::abs(number) <= kMaxCoordinate)) {
-            warnings.push_back(where + ": \"" + shownText(word) +
-                               "\" is not a finite number, the default is used");
-            return std::nullopt;
-        }
-        values[size_t(i)] = float(number);
-    }
-    return values;
-}
-
-/// Reads the statement into `block` if it is one of numbers.
-void readMtlNumbers(std::string_view line, MtlNumbers& block, const std::string& where,
-                    std::vector<std::string>& warnings) {
-    std::string_view rest = line;
-    const std::string_view key = takeWord(rest);
-    if (key == "Kd" || key == "Ks" || key == "Ke") {
-        std::optional<std::array<float, 3>>& colour =
-            key == "Kd" ? block.kd : (key == "Ks" ? block.ks : block.ke);
-        colour = readNumbers(rest, 3, where, warnings);
-    } else if (key == "Ns" || key == "d" || key == "Tr") {
-        std::string_view after = rest;
-        if (takeWord(after) == "-halo") {
-            rest = after;
-        }
-        if (const auto number = readNumbers(rest, 1, where, warnings)) {
-            (key == "Ns" ? block.ns : (key == "d" ? block.d : block.tr)) = (*number)[0];
-        }
-    }
-}
-
-std::array<float, 3> notNegative(std::array<float, 3> colour) {
-    for (float& c : colour) {
-        c = std::clamp(c, 0.0f, 1e6f);
-    }
-    return colour;
-}
-
-/// Numbers from `block`, images from `images`.
-MtlMaterial materialOf(const MtlNumbers& block, const tinyobj::material_t& images) {
-    MtlMaterial m;
-    m.name = block.name;
-    m.map_kd = imageOf(images.diffuse_texname, images.diffuse_texopt);
-    m.map_d = imageOf(images.alpha_texname, images.alpha_texopt);
-    m.bump = imageOf(images.bump_texname, images.bump_texopt);
-    m.norm = imageOf(images.normal_texname, images.normal_texopt);
-    const float grey = m.map_kd.file.empty() ? 0.8f : 1.0f;
-    m.diffuse = notNegative(block.kd.value_or(std::array<float, 3>{grey, grey, grey}));
-    m.specular = notNegative(block.ks.value_or(m.specular));
-    m.emission = notNegative(block.ke.value_or(m.emission));
-    m.shininess = std::clamp(block.ns.value_or(m.shininess), 1.0f, 1024.0f);
-    // `d` is the specification's; `Tr` = 1 − d is what some programs write instead.
-    m.opacity = std::clamp(block.d.value_or(1.0f - block.tr.value_or(0.0f)), 0.0f, 1.0f);
-    return m;
-}
-
 }  // namespace
-
-std::vector<MtlMaterial> parseMtl(std::string text, const std::string& name,
-                                  std::vector<std::string>& warnings) {
-    normaliseLines(text);
-    // The statements of images go on to tinyobjloader, with the blocks named by their number.
-    std::vector<MtlNumbers> blocks;
-    std::string images;
-    size_t line_number = 0;
-    for (size_t begin = 0; begin < text.size();) {
-        const size_t end = text.find('\n', begin);
-        const std::string_view line = trimmed({text.data() + begin, end - begin});
-        begin = end + 1;
-        ++line_number;
-        if (startsStatement(line, "newmtl")) {
-            images += "newmtl " + std::to_string(blocks.size()) + "\n";
-            blocks.push_back({std::string(trimmed(line.substr(6))), {}, {}, {}, {}, {}, {}});
-        } else if (!blocks.empty() && (line.starts_with("map_") || line.starts_with("bump") ||
-                                       line.starts_with("norm"))) {
-            images += withFullOptions(line) + "\n";
-        } else if (!blocks.empty()) {
-            readMtlNumbers(line, blocks.back(), name + ":" + std::to_string(line_number), warnings);
-        }
-    }
-    std::istringstream stream(images);
-    std::map<std::string, int> ignored_map;
-    std::vector<tinyobj::material_t> parsed;
-    std::string ignored_warning, ignored_error;
-    tinyobj::LoadMtl(&ignored_map, &parsed, &stream, &ignored_warning, &ignored_error);
-    std::vector<MtlMaterial> materials;
-    for (size_t i = 0; i < blocks.size(); ++i) {
-        materials.push_back(materialOf(blocks[i], parsed[i]));
-    }
-    return materials;
-}
 
 Result<ObjFile> parseObj(std::string text, const std::string& name) {
     ObjSource source(std::move(text), name);

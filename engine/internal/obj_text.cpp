@@ -171,6 +171,11 @@ std::string_view trimmed(std::string_view line) {
     return line;
 }
 
+bool startsStatement(std::string_view line, std::string_view keyword) {
+    return line.size() > keyword.size() && line.starts_with(keyword) &&
+           (line[keyword.size()] == ' ' || line[keyword.size()] == '\t');
+}
+
 std::optional<double> parseNumber(std::string_view word) {
     const bool negative = !word.empty() && word[0] == '-';
     if (!word.empty() && (word[0] == '-' || word[0] == '+')) {

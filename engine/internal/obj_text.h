@@ -30,6 +30,12 @@ std::string_view takeWord(std::string_view& line);
 /// `line` without blanks, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view line);
 
+/// Whether the line is `keyword`, a blank or tab, and more.
+bool startsStatement(std::string_view line, std::string_view keyword);
+
+/// Coordinates and colours beyond this, either way, are taken for broken.
+constexpr double kMaxObjNumber = 1e18;
+
 /// A decimal number such as -1.5e-3, .5 or 7. ("nan" and "inf" in any case give those values);
 /// nothing when `word` is not wholly a number. At most 19 digits count.
 std::optional<double> parseNumber(std::string_view word);

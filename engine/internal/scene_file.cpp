@@ -24,8 +24,10 @@ constexpr double kMinFovDeg = 0.1, kMaxFovDeg = 170;
 /// Reads one scene file: the tree's checks, then the files that it names.
 class SceneFileReader {
   public:
-    SceneFileReader(const std::filesystem::path& file, const JsonValue& tree)
+    SceneFileReader(const std::filesystem::path& file, const std::filesystem::path& cache_folder,
+                    const JsonValue& tree)
         : folder_(file.parent_path()),
+          cache_folder_(cache_folder),
           report_{.file = shownPath(file), .error = {}, .warnings = {}},
           root_(tree, report_) {
         scene_.name = file.stem().string();
@@ -49,7 +51,7 @@ class SceneFileReader {
     void readCuts(const JsonCursor& cursor);
     void chooseClipPlanes();
 
-    std::filesystem::path folder_;
+    std::filesystem::path folder_, cache_folder_;
     JsonReport report_;
     JsonCursor root_;
     Scene scene_;
@@ -95,7 +97,7 @@ const ObjMaterials& SceneFileReader::objOf(const JsonCursor& obj) {
     if (!added || report_.error) {
         return known->second;
     }
-    Result<ObjModel> model = loadObj(file);
+    Result<ObjModel> model = loadObj(file, cache_folder_);
     if (!model) {
         obj.refuse(model.error().message);
         return known->second;
@@ -370,12 +372,13 @@ SceneLights defaultLights() {
     return lights;
 }
 
-Result<Scene> loadSceneFile(const std::filesystem::path& file) {
+Result<Scene> loadSceneFile(const std::filesystem::path& file,
+                            const std::filesystem::path& cache_folder) {
     const Result<JsonValue> tree = readJson(file);
     if (!tree) {
         return tl::make_unexpected(tree.error());
     }
-    return SceneFileReader(file, *tree).read();
+    return SceneFileReader(file, cache_folder, *tree).read();
 }
 
 }  // namespace still

@@ -9,7 +9,8 @@
 namespace still {
 
 /// Reads NAME.json. A scene without camera keeps the default one and has automatic_camera set.
-Result<Scene> loadSceneFile(const std::filesystem::path& file);
+Result<Scene> loadSceneFile(const std::filesystem::path& file,
+                            const std::filesystem::path& cache_folder);
 
 /// Daylight from the right, above and in front, for files that say nothing: a white surface that
 /// faces the sun is 0.25 + 0.75 = 1.

@@ -41,7 +41,8 @@ MaterialSet build(const TempFolder& folder, const std::string& text) {
     for (const MtlMaterial& m : parseMtl(text, path.string(), warnings)) {
         sources.push_back({m, path});
     }
-    return buildMaterials(sources);
+    InputLog log;
+    return buildMaterials(sources, log);
 }
 
 }  // namespace
@@ -214,7 +215,8 @@ TEST_CASE("materials: the three ways to give the tree's alpha agree", "[unit][en
         for (const MtlMaterial& m : parseMtl(*text, path.string(), warnings)) {
             sources.push_back({m, path});
         }
-        const MaterialSet set = buildMaterials(sources);
+        InputLog log;
+        const MaterialSet set = buildMaterials(sources, log);
         CHECK(set.warnings.empty());
         CHECK(set.materials.at(0).alpha_texture == kNoTexture);
         REQUIRE(set.alpha_textures.size() == 1);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -317,6 +318,60 @@ TEST_CASE("obj: normal-mapped models have tangents and split mirrored seams", "[
         CHECK(t.x == (left ? -1.0f : 1.0f));
         CHECK(t.handedness == (left ? -1.0f : 1.0f));
     }
+}
+
+TEST_CASE("obj: plain faces mean what they mean to tinyobjloader", "[unit][engine]") {
+    const std::string vertices =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nvn 0 0 -1\n";
+    const TempFolder folder;
+    const auto loadText = [&](const std::string& text) {
+        return loadObj(folder.write("model.obj", text));
+    };
+    // A comment, or a plus sign, sends a line to tinyobjloader.
+    for (const std::string face :
+         {"1 2 3", "1/1 2/2 3/3", "1//1 2//1 3//2", "1/1/1 2/2/2 3/3/1", "-4/-3/-2 -3/-2/-1 -1",
+          "1 2 3 4", "\t1/1\t 2/2   3/3/1 4", "1 2", "1/0/0 2/0 3//0", "1/9 2/2 3//9"}) {
+        INFO(face);
+        const Result<ObjModel> plain_model = loadText(vertices + "f " + face + "\nf 1 3 4\n");
+        const Result<ObjModel> other_model = loadText(vertices + "f " + face + " #\nf +1 3 4\n");
+        REQUIRE((plain_model && other_model));
+        const ObjModel &plain = *plain_model, &other = *other_model;
+        CHECK(plain.mesh.indices == other.mesh.indices);
+        CHECK(plain.mesh.x == other.mesh.x);
+        CHECK(plain.warnings == other.warnings);
+        REQUIRE(plain.mesh.attributes.size() == other.mesh.attributes.size());
+        for (size_t i = 0; i < plain.mesh.attributes.size(); ++i) {
+            const VertexAttributes &a = plain.mesh.attributes[i], &b = other.mesh.attributes[i];
+            CHECK(std::array{a.nx, a.ny, a.nz, a.u, a.v} == std::array{b.nx, b.ny, b.nz, b.u, b.v});
+        }
+    }
+    for (const std::string face : {"1 2 7", "1 2 0", "1 2 -5", "1 2 1234567890"}) {
+        INFO(face);
+        const Result<ObjModel> plain = loadText(vertices + "f " + face + "\n");
+        const Result<ObjModel> other = loadText(vertices + "f " + face + " #\n");
+        REQUIRE((!plain && !other));
+        CHECK(plain.error().message == other.error().message);
+    }
+}
+
+TEST_CASE("obj: vertices are shared across mirrored texture when the normal map is broken",
+          "[unit][engine]") {
+    const TempFolder folder;
+    folder.write("good.ppm", "P6\n1 1\n255\nabc");
+    folder.write("bad.ppm", "P6\n1 1\n255\n");
+    folder.write("m.mtl", "newmtl good\nnorm good.ppm\nnewmtl bad\nnorm bad.ppm\n");
+    const auto count = [&](const std::string& material) {
+        const Result<ObjModel> model = loadObj(
+            folder.write(material + ".obj",
+                         "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\n"
+                         "vt 0 1\nusemtl " +
+                             material + "\nf 1/1 2/2 3/3\nf 2/2 4/1 3/3\n"));
+        REQUIRE(model);
+        CHECK(model->mesh.tangents.empty() == (material == "bad"));
+        return model->mesh.vertexCount();
+    };
+    CHECK(count("good") == 6);
+    CHECK(count("bad") == 4);
 }
 
 TEST_CASE("obj: models are appended to a scene with their numbers moved", "[unit][engine]") {
