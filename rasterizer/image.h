@@ -4,9 +4,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
-#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -34,6 +32,16 @@ struct ImageView {
 /// vectors, and whole tiles, past the right edge. What stands in the padding is unspecified.
 constexpr int kRowPadding = 64;
 
+/// Memory for a plane, from the start of a cache line.
+struct PlaneMemory {
+    void* data = nullptr;
+    size_t mapped_bytes = 0;  ///< 0: it comes from operator new
+};
+/// Zeros. Large planes get the system's own zero pages, which cost neither time nor memory before
+/// they are touched.
+PlaneMemory allocateZeros(size_t bytes);
+void freePlane(PlaneMemory memory);
+
 /// Owns one plane. Elements before the first row and after the last one (kRowPadding each) may be
 /// read, so that a 3×3 window may be loaded without a test and masked afterwards.
 template <class T>
@@ -50,10 +58,12 @@ class Image {
         if (width == width_ && height == height_) {
             return;
         }
-        stride_ = (ptrdiff_t{width} + kRowPadding - 1) / kRowPadding * kRowPadding;
-        const size_t count = size_t(stride_) * size_t(height) + 2 * kRowPadding;
-        memory_.reset(static_cast<T*>(::operator new(count * sizeof(T), kAlignment)));
-        std::memset(static_cast<void*>(memory_.get()), 0, count * sizeof(T));
+        const ptrdiff_t stride = (ptrdiff_t{width} + kRowPadding - 1) / kRowPadding * kRowPadding;
+        const size_t count = size_t(stride) * size_t(height) + 2 * kRowPadding;
+        *this = Image();  // first, so that there are never two planes
+        const PlaneMemory memory = allocateZeros(count * sizeof(T));
+        memory_ = Memory(static_cast<T*>(memory.data), {memory.mapped_bytes});
+        stride_ = stride;
         width_ = width;
         height_ = height;
     }
@@ -70,11 +80,12 @@ class Image {
     const T& at(int x, int y) const { return view().at(x, y); }
 
   private:
-    static constexpr std::align_val_t kAlignment{64};
     struct Free {
-        void operator()(T* p) const { ::operator delete(static_cast<void*>(p), kAlignment); }
+        size_t mapped_bytes = 0;
+        void operator()(T* p) const { freePlane({static_cast<void*>(p), mapped_bytes}); }
     };
-    std::unique_ptr<T, Free> memory_;
+    using Memory = std::unique_ptr<T, Free>;
+    Memory memory_;
     int width_ = 0;
     int height_ = 0;
     ptrdiff_t stride_ = 0;

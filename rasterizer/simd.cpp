@@ -43,7 +43,9 @@ std::vector<SimdTarget> availableSimdTargets() {
 }
 
 SimdTarget bestSimdTarget() {
-    return availableSimdTargets().back();
+    // Asking the processor takes half a millisecond in a virtual machine.
+    static const SimdTarget best = availableSimdTargets().back();
+    return best;
 }
 
 }  // namespace still
