@@ -23,8 +23,9 @@ namespace {
 
 using ByteTable = std::array<double, 256>;
 
+/// Of values ≥ 0, where cutting off the fraction is floor().
 uint32_t roundHalfUp(double value) {
-    return uint32_t(std::floor(value + 0.5));
+    return uint32_t(int64_t(value + 0.5));
 }
 
 const ByteTable& srgbToLinear() {
@@ -50,15 +51,13 @@ const ByteTable& byteToUnit() {
     return table;
 }
 
+// Objects and not functions, so that loops are compiled for each.
+
 /// Linear light → 10 bits, gamma 2.0.
-uint32_t encodeGamma2(double linear) {
-    return roundHalfUp(1023.0 * std::sqrt(linear));
-}
+constexpr auto encodeGamma2 = [](double linear) { return roundHalfUp(1023.0 * std::sqrt(linear)); };
 
 /// (component + 1) / 2 → 10 bits.
-uint32_t encodeUnit(double unit) {
-    return roundHalfUp(1023.0 * unit);
-}
+constexpr auto encodeUnit = [](double unit) { return roundHalfUp(1023.0 * unit); };
 
 /// Source texels under one texel of the next level, along one axis: two of equal weight when the
 /// size is even, three when it is odd (the outer ones are cut), one when it is already 1.
@@ -98,9 +97,31 @@ struct Plane {
     }
 };
 
+/// shrink() of even sizes: weights of ½ and ¼ are exact, so one multiplication at the end gives the
+/// same bits.
+template <size_t N, class Fetch>
+Plane<N> halve(uint32_t width, uint32_t height, const Fetch& fetch) {
+    Plane<N> out{width / 2, height / 2, {}};
+    out.texels.resize(size_t(out.width) * out.height);
+    std::array<double, N>* to = out.texels.data();
+    for (uint32_t y = 0; y < height; y += 2) {
+        for (uint32_t x = 0; x < width; x += 2, ++to) {
+            const std::array<double, N> a = fetch(x, y), b = fetch(x + 1, y);
+            const std::array<double, N> c = fetch(x, y + 1), d = fetch(x + 1, y + 1);
+            for (size_t i = 0; i < N; ++i) {
+                (*to)[i] = ((a[i] + b[i]) + (c[i] + d[i])) * 0.25;
+            }
+        }
+    }
+    return out;
+}
+
 /// The next level of a width × height level that `fetch(x, y)` reads.
 template <size_t N, class Fetch>
 Plane<N> shrink(uint32_t width, uint32_t height, const Fetch& fetch) {
+    if (width % 2 == 0 && height % 2 == 0) {
+        return halve<N>(width, height, fetch);
+    }
     const std::vector<Taps> columns = tapsOf(width), rows = tapsOf(height);
     Plane<N> out{uint32_t(columns.size()), uint32_t(rows.size()), {}};
     out.texels.reserve(columns.size() * rows.size());
@@ -160,11 +181,9 @@ void forEachMip(const std::vector<TextureLevel>& levels, const Fetch& level0, co
     }
 }
 
-using Encode = uint32_t (*)(double);
-
 /// Levels from 1 on of a texture of three channels.
-template <class Fetch>
-void addMips(Texture& texture, const Fetch& level0, Encode encode) {
+template <class Fetch, class Encode>
+void addMips(Texture& texture, const Fetch& level0, const Encode& encode) {
     forEachMip<3>(texture.levels, level0, [&](const TextureLevel& level, const Plane<3>& plane) {
         uint32_t* out = texture.texels.data() + level.offset;
         for (const std::array<double, 3>& t : plane.texels) {
@@ -183,8 +202,9 @@ Texture emptyTexture(ImageView<const Rgba8> image, Wrap wrap) {
 }
 
 /// A texture whose channels are read through `decode` and written by `encode`.
+template <class Encode>
 Texture makeFromBytes(ImageView<const Rgba8> image, Wrap wrap, const ByteTable& decode,
-                      Encode encode) {
+                      const Encode& encode) {
     std::array<uint32_t, 256> code;
     for (size_t c = 0; c < 256; ++c) {
         code[c] = encode(decode[c]);

@@ -131,10 +131,16 @@ Result<Image<Rgba8>> decodeHdr(std::span<const uint8_t> bytes, const std::string
 }
 
 /// Grey, grey + alpha, RGB or RGBA.
-Rgba8 pixelOf(const stbi_uc* p, int channels) {
-    const int g = channels >= 3 ? 1 : 0, b = channels >= 3 ? 2 : 0;
-    const bool has_alpha = channels == 2 || channels == 4;
-    return {p[0], p[g], p[b], has_alpha ? p[channels - 1] : stbi_uc{255}};
+template <int kChannels>
+void expand(const stbi_uc* p, ImageView<Rgba8> image) {
+    constexpr int kGreen = kChannels >= 3 ? 1 : 0, kBlue = kChannels >= 3 ? 2 : 0;
+    constexpr bool kAlpha = kChannels == 2 || kChannels == 4;
+    for (int y = 0; y < image.height; ++y) {
+        Rgba8* row = image.row(y);
+        for (int x = 0; x < image.width; ++x, p += kChannels) {
+            row[x] = {p[0], p[kGreen], p[kBlue], kAlpha ? p[kChannels - 1] : stbi_uc{255}};
+        }
+    }
 }
 
 Result<Image<Rgba8>> decodeBytes(std::span<const uint8_t> bytes, const std::string& name) {
@@ -152,13 +158,8 @@ Result<Image<Rgba8>> decodeBytes(std::span<const uint8_t> bytes, const std::stri
         return refuse(name, "truncated");
     }
     Image<Rgba8> image(width, height);
-    const stbi_uc* p = pixels.get();
-    for (int y = 0; y < height; ++y) {
-        Rgba8* row = image.view().row(y);
-        for (int x = 0; x < width; ++x, p += channels) {
-            row[x] = pixelOf(p, channels);
-        }
-    }
+    constexpr std::array kExpand{expand<1>, expand<2>, expand<3>, expand<4>};
+    kExpand[size_t(channels - 1)](pixels.get(), image.view());
     return image;
 }
 

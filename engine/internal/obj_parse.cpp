@@ -42,6 +42,12 @@ class ObjSource : public std::streambuf {
   public:
     ObjSource(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {
         normaliseLines(text_);
+        // More than most files need, so that nothing is copied; what is not touched costs nothing.
+        file.positions.reserve(text_.size() / 32);
+        file.texcoords.reserve(text_.size() / 32);
+        file.normals.reserve(text_.size() / 32);
+        file.corners.reserve(text_.size() / 12);
+        file.face_begin.reserve(text_.size() / 24);
         file.face_begin.push_back(0);
     }
 
@@ -130,16 +136,16 @@ void ObjSource::warn(const Tally& tally, const char* what) {
 }
 
 void ObjSource::readPosition(std::string_view line) {
-    const std::string vertex = "vertex " + std::to_string(file.positions.size() + 1);
+    const auto vertex = [&] { return "vertex " + std::to_string(file.positions.size() + 1); };
     std::array<float, 3> position;
     for (float& component : position) {
         const std::string_view word = takeWord(line);
         const std::optional<double> number = parseNumber(word);
         if (!number) {
-            return stop(vertex + ": \"" + shownText(word) + "\", expected three numbers");
+            return stop(vertex() + ": \"" + shownText(word) + "\", expected three numbers");
         }
         if (!(std::abs(*number) <= kMaxObjNumber)) {
-            return stop(vertex + " is not finite (" + shownText(word) +
+            return stop(vertex() + " is not finite (" + shownText(word) +
                         "), expected coordinates within ±1e18");
         }
         component = float(*number);

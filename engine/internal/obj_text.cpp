@@ -106,6 +106,7 @@ Result<std::string> readFile(const std::filesystem::path& file) {
         if (size > std::uintmax_t(std::numeric_limits<int>::max())) {
             return fail(shownPath(file) + ": larger than 2 GiB, expected a smaller file");
         }
+        bytes.reserve(size_t(size) + 1);  // normaliseLines() adds one
         bytes.resize(size_t(size));
         stream.read(bytes.data(), std::streamsize(size));
         bytes.resize(size_t(stream.gcount()));
@@ -169,11 +170,6 @@ std::string_view trimmed(std::string_view line) {
         line.remove_suffix(1);
     }
     return line;
-}
-
-bool startsStatement(std::string_view line, std::string_view keyword) {
-    return line.size() > keyword.size() && line.starts_with(keyword) &&
-           (line[keyword.size()] == ' ' || line[keyword.size()] == '\t');
 }
 
 std::optional<double> parseNumber(std::string_view word) {

@@ -31,7 +31,10 @@ std::string_view takeWord(std::string_view& line);
 std::string_view trimmed(std::string_view line);
 
 /// Whether the line is `keyword`, a blank or tab, and more.
-bool startsStatement(std::string_view line, std::string_view keyword);
+inline bool startsStatement(std::string_view line, std::string_view keyword) {
+    return line.size() > keyword.size() && line.starts_with(keyword) &&
+           (line[keyword.size()] == ' ' || line[keyword.size()] == '\t');
+}
 
 /// Coordinates and colours beyond this, either way, are taken for broken.
 constexpr double kMaxObjNumber = 1e18;
