@@ -7,6 +7,7 @@
 
 #include "demos/scenes/bench_scenes.h"
 #include "demos/stillframe/chart_report.h"
+#include "demos/stillframe/file_cache.h"
 #include "demos/stillframe/progress.h"
 #include "demos/stillframe/report.h"
 #include "demos/stillframe/scene_source.h"
@@ -38,8 +39,10 @@ std::string plainName(const std::string& scene) {
 }
 
 Outcome<void> openScenes(const ChartOptions& options, std::list<ChartScene>& scenes) {
+    const std::filesystem::path cache =
+        options.cache.empty() ? usersCacheFolder() : std::filesystem::path(options.cache);
     for (const std::string& text : options.scenes) {
-        auto opened = openScene(text);
+        auto opened = openScene(text, cache);
         if (!opened) {
             return tl::make_unexpected(opened.error());
         }

@@ -30,17 +30,6 @@ std::string environment(const char* name) {
     return value != nullptr ? value : "";
 }
 
-/// The XDG base directory specification ignores relative paths.
-Outcome<fs::path> usersFolder() {
-    if (const fs::path xdg = environment("XDG_CACHE_HOME"); xdg.is_absolute()) {
-        return xdg / "stillframe";
-    }
-    if (const fs::path home = environment("HOME"); home.is_absolute()) {
-        return home / ".cache" / "stillframe";
-    }
-    return usageError("--cache: expected a folder, because neither XDG_CACHE_HOME nor HOME is set");
-}
-
 }  // namespace
 
 uint64_t hashBytes(std::string_view bytes) {
@@ -54,14 +43,27 @@ uint64_t programHash() {
     return bytes ? hashBytes(*bytes) : 0;
 }
 
+fs::path usersCacheFolder() {
+    // The XDG base directory specification ignores relative paths.
+    if (const fs::path xdg = environment("XDG_CACHE_HOME"); xdg.is_absolute()) {
+        return xdg / "stillframe";
+    }
+    if (const fs::path home = environment("HOME"); home.is_absolute()) {
+        return home / ".cache" / "stillframe";
+    }
+    return {};
+}
+
 FileCache::FileCache(fs::path folder, Interruption& interruption)
     : folder_(std::move(folder)), interruption_(&interruption) {}
 
 Outcome<FileCache> FileCache::open(const std::string& folder, Interruption& interruption) {
-    Outcome<fs::path> chosen = folder.empty() ? usersFolder() : Outcome<fs::path>(folder);
-    return std::move(chosen).and_then([&](const fs::path& path) {
-        return makeFolder(path).map([&] { return FileCache(path, interruption); });
-    });
+    const fs::path path = folder.empty() ? usersCacheFolder() : fs::path(folder);
+    if (path.empty()) {
+        return usageError(
+            "--cache: expected a folder, because neither XDG_CACHE_HOME nor HOME is set");
+    }
+    return makeFolder(path).map([&] { return FileCache(path, interruption); });
 }
 
 fs::path FileCache::pathOf(uint64_t key) const {

@@ -20,10 +20,14 @@ uint64_t hashBytes(std::string_view bytes);
 /// Hash of the running program's file: another build, another number. 0 when it cannot be read.
 uint64_t programHash();
 
+/// $XDG_CACHE_HOME/stillframe, or ~/.cache/stillframe, which need not be there; empty when neither
+/// variable is set.
+std::filesystem::path usersCacheFolder();
+
 /// May be used by several threads, and by several processes in the same folder.
 class FileCache {
   public:
-    /// `folder`, or $XDG_CACHE_HOME/stillframe, or ~/.cache/stillframe; made when it is not there.
+    /// `folder`, or usersCacheFolder() when that is empty; made when it is not there.
     /// `interruption` must outlive the cache.
     static Outcome<FileCache> open(const std::string& folder, Interruption& interruption);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "demos/stillframe/file_cache.h"
 #include "demos/stillframe/scene_source.h"
 #include "engine/jitter.h"
 #include "engine/load.h"
@@ -83,7 +84,8 @@ Outcome<void> readCameras(Job& job) {
 }
 
 Outcome<void> readFiles(Job& job) {
-    return store(openScene(job.options.scene), job.scene)
+    const auto cache = job.options.no_cache ? std::filesystem::path() : usersCacheFolder();
+    return store(openScene(job.options.scene, cache), job.scene)
         .map([&] { printWarnings(job.scene.warnings); })
         .and_then([&] { return readCameras(job); });
 }

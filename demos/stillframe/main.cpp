@@ -95,6 +95,9 @@ void addMachineOptions(CLI::App& render, RenderOptions& o) {
         .add_option("--shading", o.shading, "deferred (default) or forward. The bytes are the same")
         ->check(CLI::IsMember({"deferred", "forward"}))
         ->type_name("NAME");
+    render.add_flag("--no-cache", o.no_cache,
+                    "Read OBJ files anew, where otherwise large ones are kept ready in\n"
+                    "$XDG_CACHE_HOME/stillframe or ~/.cache/stillframe (at most 2 GB)");
     render.add_flag("--hash", o.hash, "Print 64-bit hashes of all planes of each frame");
     render.add_flag("--json", o.json, "Print times, memory and hashes as one JSON object");
 }

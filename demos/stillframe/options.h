@@ -32,6 +32,7 @@ struct RenderOptions {
     std::string shading = "deferred";
     std::string tone_map = "none";
     int fps = 30;
+    bool no_cache = false;
     bool hash = false;
     bool json = false;
 };

@@ -8,10 +8,10 @@
 
 namespace still::command {
 
-Outcome<Scene> openScene(const std::string& name) {
+Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder) {
     constexpr std::string_view kBuiltin = "builtin:";
     if (!name.starts_with(kBuiltin)) {
-        return fromResult(loadScene(name));
+        return fromResult(loadScene(name, cache_folder));
     }
     return builtinScene(name.substr(kBuiltin.size())).map_error([](const Error& error) {
         return Failure{ExitCode::usage, error.message};

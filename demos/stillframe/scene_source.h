@@ -1,6 +1,7 @@
 #pragma once
 // Scenes as the command line names them.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,8 +10,9 @@
 
 namespace still::command {
 
-/// Opens FILE.obj, FILE.json or builtin:NAME. Its warnings are the caller's to print.
-Outcome<Scene> openScene(const std::string& name);
+/// Opens FILE.obj, FILE.json or builtin:NAME, with the help of a `cache_folder` if one is given
+/// (see loadScene). Its warnings are the caller's to print.
+Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder = {});
 
 /// Each on a line of standard error.
 void printWarnings(const std::vector<std::string>& warnings);
