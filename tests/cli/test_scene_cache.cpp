@@ -98,3 +98,5 @@ TEST_CASE("scene cache: several programs may start at once", "[cli]") {
     }
     CHECK(filesIn(home.folder.path() / "cache" / "stillframe").size() == 1);
 }
+
+}  // namespace still::test
