@@ -7,6 +7,8 @@ still_packages=(
     libexpected-dev libxxhash-dev libpng-dev libcairo2-dev fonts-dejavu-core catch2
     ffmpeg
 )
+# What tests/bench/peer needs besides; it is left out, or its tests are skipped, without them.
+still_peer_packages=(libegl-dev libgles-dev libegl-mesa0 libgl1-mesa-dri)
 
 # install_packages [MORE…]: quiet, and nothing at all when everything is there.
 install_packages() {

@@ -14,9 +14,7 @@ case "${1:-}" in
         ;;
 esac
 
-# The second line is for bench_peer alone, which is left out or skipped without them.
-install_packages clang \
-    libegl-dev libgles-dev libegl-mesa0 libgl1-mesa-dri
+install_packages clang "${still_peer_packages[@]}"
 cmake --preset release -DSTILL_TESTS=ON >/dev/null
 cmake --build --preset release
 ctest --preset release --parallel "$(nproc)" "${select[@]}"
