@@ -18,11 +18,18 @@ struct Job {
     int grain = 1;
     void (*call)(void*, int, int, int) = nullptr;
     void* body = nullptr;
+    WorkObserver* observer = nullptr;
 
     int grains() const { return (count + grain - 1) / grain; }
     void runGrain(int index, int worker) const {
         const int begin = index * grain;
+        if (observer != nullptr) {
+            observer->grainBegins(index);
+        }
         call(body, begin, std::min(begin + grain, count), worker);
+        if (observer != nullptr) {
+            observer->grainEnds(index);
+        }
     }
 };
 
@@ -41,6 +48,7 @@ struct Workers::State {
     int threads = 1;
     Schedule schedule = Schedule::pooled;
     uint64_t random = 0;
+    WorkObserver* observer = nullptr;
 
     std::mutex mutex;
     std::condition_variable start, done;
@@ -129,9 +137,16 @@ int Workers::threads() const {
     return state_->threads;
 }
 
+void Workers::observe(WorkObserver* observer) {
+    state_->observer = observer;
+}
+
 void Workers::run(int count, int grain, Call call, void* body) {
     assert(count >= 0 && grain >= 1);
-    const Job job{count, grain, call, body};
+    const Job job{count, grain, call, body, state_->observer};
+    if (job.observer != nullptr) {
+        job.observer->sectionBegins(job.grains());
+    }
     if (state_->schedule == Schedule::shuffled) {
         state_->runShuffled(job);
     } else if (state_->threads == 1 || job.grains() <= 1) {

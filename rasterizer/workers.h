@@ -14,6 +14,18 @@ enum class Schedule {
     shuffled,  ///< grains run on the calling thread in a seeded random order (order-stress tests)
 };
 
+/// Is told about the work while it happens, by the thread that does it; for measurements.
+class WorkObserver {
+  public:
+    /// A parallelFor of so many grains is about to start.
+    virtual void sectionBegins(int grains) = 0;
+    virtual void grainBegins(int grain) = 0;
+    virtual void grainEnds(int grain) = 0;
+
+  protected:
+    ~WorkObserver() = default;
+};
+
 class Workers {
   public:
     /// threads ≥ 1 counts the calling thread; serial and shuffled use one thread only.
@@ -38,6 +50,9 @@ class Workers {
             },
             const_cast<void*>(static_cast<const void*>(&task)));
     }
+
+    /// From now on, until it is null. Not from within a task.
+    void observe(WorkObserver* observer);
 
   private:
     using Call = void (*)(void* body, int begin, int end, int worker);

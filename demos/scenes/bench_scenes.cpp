@@ -118,28 +118,25 @@ Scene frozen(Scene scene) {
     return scene;
 }
 
-std::optional<Scene> benchScene(const Scene& scene, BenchMotion motion, int height) {
-    if (motion == BenchMotion::still) {
-        return frozen(scene);
-    }
+std::optional<Scene> benchScene(Scene scene, BenchMotion motion, int height) {
     if (motion == BenchMotion::objects) {
         if (!hasMovers(scene)) {
             return std::nullopt;
         }
-        Scene moving = scene;
-        holdCamera(moving);
-        moving.cuts.clear();
-        return moving;
+        holdCamera(scene);
+        scene.cuts.clear();
+        return scene;
     }
-    Scene panning = frozen(scene);
-    if (scene.camera_file) {
-        panning.camera_file = scene.camera_file;
-    } else if (scene.automatic_camera) {
-        panAround(panning);
-    } else {
-        panSideways(panning, height);
+    std::optional<CameraFile> cameras = scene.camera_file;
+    scene = frozen(std::move(scene));
+    if (motion == BenchMotion::pan && cameras) {
+        scene.camera_file = std::move(cameras);
+    } else if (motion == BenchMotion::pan && scene.automatic_camera) {
+        panAround(scene);
+    } else if (motion == BenchMotion::pan) {
+        panSideways(scene, height);
     }
-    return panning;
+    return scene;
 }
 
 }  // namespace still

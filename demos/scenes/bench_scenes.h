@@ -30,7 +30,7 @@ Scene frozen(Scene scene);
 /// the scene's camera file; without one it goes sideways and back, so that what is as far as its
 /// target moves by kPanPx on a picture of that height, or, where the camera was chosen by the
 /// loader, around the target by kPanDeg. Its path ends after kBenchFrames.
-std::optional<Scene> benchScene(const Scene& scene, BenchMotion motion, int height);
+std::optional<Scene> benchScene(Scene scene, BenchMotion motion, int height);
 
 constexpr double kPanPx = 4.3;  ///< per frame; no whole number, which resampling would gain from
 constexpr double kPanDeg = 1.0 / 3;

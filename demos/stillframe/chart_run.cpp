@@ -1,11 +1,12 @@
 #include "demos/stillframe/chart_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 #include "demos/stillframe/cell.h"
+#include "demos/stillframe/clock.h"
 #include "demos/stillframe/pareto.h"
+#include "demos/stillframe/statistics.h"
 #include "postfx/flip.h"
 #include "postfx/metrics.h"
 
@@ -15,17 +16,6 @@ namespace {
 constexpr int kCompareStep = 4;
 /// Medians of the same work differ by so much.
 constexpr double kTimeTolerance = 0.03;
-
-double nowMs() {
-    using Milliseconds = std::chrono::duration<double, std::milli>;
-    return Milliseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double medianOf(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const size_t count = values.size();
-    return (values[(count - 1) / 2] + values[count / 2]) / 2;
-}
 
 /// One mode under measurement.
 struct Contender {
@@ -112,7 +102,7 @@ std::vector<ChartPoint> SegmentRun::run(int threads, bool with_errors) {
                          .segment = segment_.name,
                          .preset = contender.mode->name,
                          .threads = threads,
-                         .ms = medianOf(contender.times_ms)};
+                         .ms = statisticsOf(contender.times_ms).median};
         if (with_errors) {
             point.psnr = std::min(kBestPsnrDb, psnrDb(contender.error));
             point.flip = contender.flip_sum / contender.compared;

@@ -6,7 +6,9 @@
 #include <new>
 #include <string>
 
+#include "demos/scenes/bench_scenes.h"
 #include "demos/stillframe/atlas.h"
+#include "demos/stillframe/bench.h"
 #include "demos/stillframe/chart.h"
 #include "demos/stillframe/compare.h"
 #include "demos/stillframe/render.h"
@@ -207,6 +209,46 @@ CLI::App* addChart(CLI::App& app, ChartOptions& o) {
     return chart;
 }
 
+CLI::App* addBench(CLI::App& app, BenchOptions& o) {
+    CLI::App* bench = app.add_subcommand(
+        "bench",
+        "Measure the stages of a frame: scenes at rest, under a moving camera, with\n"
+        "moving objects");
+    bench
+        ->add_option("SCENE", o.scenes,
+                     "FILE.obj, FILE.json or builtin:NAME; default those made for it,\n"
+                     "and Sponza when it is in the folder STILL_DATA")
+        ->type_name("");
+    bench
+        ->add_option_function<std::string>(
+            "--resolution",
+            [&o](const std::string& text) {
+                const auto size = parseResolution(text);
+                if (!size) {
+                    throw CLI::ValidationError(size.error().message);
+                }
+                o.resolution = *size;
+            },
+            "Default 1920x1080, or the camera file's")
+        ->type_name("WIDTHxHEIGHT");
+    bench
+        ->add_option("--threads", o.threads,
+                     "One number or several with commas, measured in turns;\n"
+                     "default all cores")
+        ->type_name("N,...");
+    bench
+        ->add_option("--frames", o.frames,
+                     "Of each motion, the first quarter of them unmeasured; default 72:\n"
+                     "a scene at rest is finished after 64")
+        ->check(CLI::Range(4, kBenchFrames))
+        ->type_name("N");
+    bench->add_option("--cameras", o.cameras, "JSON with a view and a projection for each frame")
+        ->type_name("FILE");
+    bench->add_option("--simd", o.simd, "Instruction set, default the best")->type_name("TARGET");
+    bench->add_flag("--json", o.json, "Print the results as one JSON object");
+    return bench;
+}
+
 /// One line, whatever the file's name is made of.
 int report(const Failure& failure) {
     std::string line = failure.message;
@@ -231,6 +273,8 @@ int run(int argc, char** argv) {
     const CLI::App* atlas_command = addAtlas(app, atlas_options);
     ChartOptions chart_options;
     const CLI::App* chart_command = addChart(app, chart_options);
+    BenchOptions bench_options;
+    const CLI::App* bench_command = addBench(app, bench_options);
     const CLI::App* presets_command = addPresets(app, presets_json);
     try {
         app.parse(argc, argv);
@@ -250,6 +294,7 @@ int run(int argc, char** argv) {
         render_command->parsed()  ? render(render_options, interruption).map(ok)
         : atlas_command->parsed() ? atlas(atlas_options, interruption).map(ok)
         : chart_command->parsed() ? chart(chart_options, interruption).map(ok)
+        : bench_command->parsed() ? bench(bench_options).map(ok)
                                   : compare(compare_options, interruption);
     return outcome ? int(*outcome) : report(outcome.error());
 }

@@ -1,8 +1,8 @@
 #include "demos/stillframe/render.h"
 
-#include <chrono>
 #include <memory>
 
+#include "demos/stillframe/clock.h"
 #include "demos/stillframe/dump.h"
 #include "demos/stillframe/job.h"
 #include "demos/stillframe/png.h"
@@ -12,11 +12,6 @@
 
 namespace still::command {
 namespace {
-
-double nowMs() {
-    using Milliseconds = std::chrono::duration<double, std::milli>;
-    return Milliseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Renders a job's frames into its sink and remembers what the report needs.
 class Run {

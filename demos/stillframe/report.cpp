@@ -1,32 +1,23 @@
 #include "demos/stillframe/report.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
+
+#include "demos/stillframe/json_report.h"
+#include "demos/stillframe/peak_memory.h"
 
 namespace still::command {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Nearest rank for the 95th percentile; the median of an even number is the mean of the middle
-/// two.
 template <class Time>
 Json statistics(const std::vector<RenderReport::Frame>& frames, Time&& time_of) {
     std::vector<double> times_ms;
     for (const RenderReport::Frame& frame : frames) {
         times_ms.push_back(time_of(frame));
     }
-    std::sort(times_ms.begin(), times_ms.end());
-    const size_t count = times_ms.size();
-    const double median_ms = (times_ms[(count - 1) / 2] + times_ms[count / 2]) / 2;
-    return {{"min_ms", times_ms[0]},
-            {"median_ms", median_ms},
-            {"p95_ms", times_ms[(count * 95 + 99) / 100 - 1]}};
+    return statisticsJson(times_ms);
 }
 
 Json stageStatistics(const std::vector<RenderReport::Frame>& frames, double StageTimes::*stage) {
@@ -39,17 +30,6 @@ Json hashJson(const RenderReport::Frame& frame) {
     return {{"frame", frame.frame},  {"output", hex(h.output)}, {"color", hex(h.color)},
             {"depth", hex(h.depth)}, {"normal", hex(h.normal)}, {"motion", hex(h.motion)},
             {"id", hex(h.id)}};
-}
-
-uint64_t peakRssBytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return uint64_t(usage.ru_maxrss) * 1024;
-}
-
-/// File names may hold any bytes; JSON may not.
-std::string text(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json errorJson(const PixelError& error, double ssim) {
@@ -122,7 +102,7 @@ std::string renderJson(const RenderReport& report) {
                       {"output", stageStatistics(frames, &StageTimes::output_ms)}};
     json["total"] =
         statistics(frames, [](const RenderReport::Frame& frame) { return frame.total_ms; });
-    json["peak_rss_bytes"] = peakRssBytes();
+    json["peak_rss_bytes"] = peakMemoryBytes();
     if (report.with_hashes) {
         json["hashes"] = Json::array();
         for (const RenderReport::Frame& frame : frames) {

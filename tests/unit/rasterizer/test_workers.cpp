@@ -121,3 +121,36 @@ TEST_CASE("workers: results are visible when parallelFor has returned", "[worker
         REQUIRE(ok);
     }
 }
+
+TEST_CASE("workers: an observer hears of every grain once, until it is taken away", "[workers]") {
+    class Ear final : public WorkObserver {
+      public:
+        void sectionBegins(int grains) override { sections.push_back(grains); }
+        void grainBegins(int grain) override { note(grain, 1); }
+        void grainEnds(int grain) override { note(grain, 100); }
+
+        std::vector<int> sections;
+        std::vector<int> heard = std::vector<int>(64, 0);
+
+      private:
+        void note(int grain, int what) {
+            std::lock_guard lock(mutex_);
+            heard[size_t(grain)] += what;
+        }
+        std::mutex mutex_;
+    };
+    const Schedule schedule = GENERATE(Schedule::pooled, Schedule::serial, Schedule::shuffled);
+    const int threads = GENERATE(1, 3);
+    Workers workers(threads, schedule, 7);
+    Ear ear;
+    workers.observe(&ear);
+    grains(workers, 190, 3);  // 64 grains
+    grains(workers, 1, 3);
+    CHECK(ear.sections == std::vector<int>{64, 1});
+    CHECK(ear.heard[0] == 202);
+    CHECK(std::all_of(ear.heard.begin() + 1, ear.heard.end(),
+                      [](int heard) { return heard == 101; }));
+    workers.observe(nullptr);
+    grains(workers, 190, 3);
+    CHECK(ear.sections.size() == 2);
+}
