@@ -24,28 +24,20 @@ constexpr size_t pieceBytes() {
 bool within(float value, float limit) {
     return std::abs(value) <= limit;
 }
-bool isCoordinate(float value) {
-    return within(value, float(kMaxObjNumber));
-}
-bool areAttributes(const VertexAttributes& a) {
-    constexpr float kUnit = 1.001f, kMaxTexcoord = 32768.0f;
+
+// What elements may be. Objects and not functions, so that loops are compiled for each.
+constexpr float kUnit = 1.001f, kMaxTexcoord = 32768.0f;
+constexpr auto isCoordinate = [](float value) { return within(value, float(kMaxObjNumber)); };
+constexpr auto areAttributes = [](const VertexAttributes& a) {
     return within(a.nx, kUnit) && within(a.ny, kUnit) && within(a.nz, kUnit) &&
            within(a.u, kMaxTexcoord) && within(a.v, kMaxTexcoord);
-}
-bool isTangent(const VertexTangent& t) {
-    constexpr float kUnit = 1.001f;
+};
+constexpr auto isTangent = [](const VertexTangent& t) {
     return within(t.x, kUnit) && within(t.y, kUnit) && within(t.z, kUnit) &&
            std::abs(t.handedness) == 1.0f;
-}
-bool isTexel(uint32_t word) {
-    return word >> 30 == 0;
-}
-bool isAny(uint32_t) {
-    return true;
-}
-bool isAlpha(uint8_t) {
-    return true;
-}
+};
+constexpr auto isTexel = [](uint32_t word) { return word >> 30 == 0; };
+constexpr auto isAnything = [](auto) { return true; };
 
 /// What writes and reads have in common: which values there are, in which order. The structured
 /// bindings stop compiling when a member is added.
@@ -76,7 +68,7 @@ void describe(Io& io, Mesh& mesh) {
     io.array(z, isCoordinate);
     io.array(attributes, areAttributes);
     io.array(tangents, isTangent);
-    io.array(indices, isAny);
+    io.array(indices, isAnything);
     io.list(parts, [&](MeshPart& part) {
         auto& [first_triangle, triangle_count, material] = part;
         io.values(first_triangle, triangle_count, material);
@@ -91,7 +83,7 @@ void describe(Io& io, ObjModel& model) {
     io.list(materials, [&](Material& material) { describe(io, material); });
     io.list(names, text);
     io.list(textures, [&](Texture& texture) { describe(io, texture, isTexel); });
-    io.list(alpha_textures, [&](AlphaTexture& texture) { describe(io, texture, isAlpha); });
+    io.list(alpha_textures, [&](AlphaTexture& texture) { describe(io, texture, isAnything); });
     io.list(warnings, text);
 }
 

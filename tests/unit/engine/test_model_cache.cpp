@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -212,6 +214,55 @@ TEST_CASE("model cache: small models, and files that are no models, are not kept
     REQUIRE(!failed);
     CHECK(failed.error().message == loadObj(broken).error().message);
     CHECK(!fs::exists(cache));
+}
+
+TEST_CASE("model cache: bytes that fit their hash by design give a sound model or none",
+          "[unit][engine]") {
+    const CachedModel scene;
+    const ObjModel good = scene.load();
+    const FlatModel flat = flatten({"key", {{"a file", {1, 2, 3}}}}, good);
+    std::vector<ArrayInfo> infos;
+    std::string arrays;
+    for (const FlatArray& array : flat.arrays) {
+        infos.push_back(array.info());
+        arrays += array.bytes;
+    }
+    const auto read = [&](const std::string& table, const std::vector<ArrayInfo>& sizes) {
+        ModelOrigin origin;
+        std::optional<ObjModel> model(std::in_place);
+        const std::vector<ModelFill> fills = unflatten(table, sizes, origin, *model);
+        std::istringstream stream(arrays);
+        bool filled = !fills.empty();
+        for (const ModelFill& fill : fills) {
+            filled = filled && fill.run(stream);
+        }
+        return filled && isSound(*model) ? std::move(model) : std::nullopt;
+    };
+    const auto intact = read(flat.table, infos);
+    REQUIRE(intact);
+    CHECK(bytesOf(*intact) == bytesOf(good));
+    std::mt19937 random(7);
+    int sound = 0;
+    for (int round = 0; round < 20000; ++round) {
+        std::string table = flat.table;
+        std::vector<ArrayInfo> sizes = infos;
+        for (uint32_t changes = random() % 3 + 1; changes > 0; --changes) {
+            table[random() % table.size()] = char(random() % 4 == 0 ? random() : random() % 4);
+        }
+        if (round % 4 == 0) {
+            table.resize(random() % table.size());
+        }
+        if (round % 5 == 0) {
+            sizes[random() % sizes.size()].bytes = random() % 64;
+        }
+        const auto model = read(table, sizes);
+        sound += model ? 1 : 0;
+        if (model && model->mesh.indices != good.mesh.indices) {
+            FAIL("arrays are hashed");
+        }
+    }
+    CHECK(sound > 1000);   // names, colours
+    CHECK(sound < 15000);  // counts, sizes
 }
 
 TEST_CASE("model cache: several may read and write the same model at once", "[unit][engine]") {
