@@ -4,11 +4,9 @@
 #include "engine/frame_loop.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <optional>
 
+#include "engine/internal/camera_drift.h"
 #include "engine/jitter.h"
 #include "postfx/laboratory.h"
 #include "postfx/sharpen.h"
@@ -72,7 +70,9 @@ struct FrameLoop::State {
     Taa taa;                ///< Method::gather
     Laboratory laboratory;  ///< Method::recursive
     SpatialFilter spatial;
-    GBuffer gbuffer;
+    GBuffer gbuffer;        ///< what is resolved; tiles that nothing new is in keep earlier samples
+    GBuffer fresh;          ///< FrameSettings::fresh_gbuffer, in frames that `gbuffer` has parts of
+    bool in_parts = false;  ///< this is such a frame
     OutputTable table;
     Image<Rgb8> output;
     ColourSums sums;
@@ -108,14 +108,15 @@ struct FrameLoop::State {
     int historyStart(int frame) const;
     uint32_t sampleOf(int frame, uint32_t subframe) const;
     RasterSettings rasterSettings() const;
-    void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample);
+    void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample,
+                         const TaaFrame* evidence = nullptr, bool rest = false);
     void addRasterTimes(const StageTimes& sample);
     void followCamera(const FrameState& frame);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
     TaaSettings taaSettings() const;
     bool rests(const FrameState& frame);
-    void resolve(const FrameState& frame, SampleOffset offset);
-    void resolveFrame(int frame);
+    void resolve(const FrameState& frame, const TaaFrame& evidence);
+    void resolveFrame(int frame, bool looked_at);
     void resolveHistory(int frame);
     ColourTargets resizeFiltered();
     ColourPlanes resolved() const;
@@ -154,8 +155,9 @@ RasterSettings FrameLoop::State::rasterSettings() const {
     return raster;
 }
 
+/// With `evidence`, only what the gather's resolve() will read of it; at rest that is nothing.
 void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset offset,
-                                       uint32_t sample) {
+                                       uint32_t sample, const TaaFrame* evidence, bool rest) {
     const DrawList list{.meshes = scene.meshes,
                         .materials = materialsOf(scene, frame),
                         .textures = scene.textures,
@@ -171,11 +173,24 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                          .jitter_x_fx8 = offset.x_fx8,
                          .jitter_y_fx8 = offset.y_fx8,
                          .sample = sample};
-    const RasterSettings raster = rasterSettings();
+    std::span<const uint8_t> wanted;
     StageTimes sample_times;
-    timed(sample_times.transform_bin_ms,
-          [&] { rasterizer.transformAndBin(list, view, raster, workers); });
-    timed(sample_times.raster_ms, [&] { rasterizer.rasterize(gbuffer, workers); });
+    timed(sample_times.transform_bin_ms, [&] {
+        const auto facts = rasterizer.setUp(list, view, rasterSettings());
+        if (evidence != nullptr && !rest) {
+            wanted = taa.plan(settings.width, settings.height, facts, *evidence, taaSettings());
+        }
+        rasterizer.transformAndBin(workers);
+    });
+    in_parts = rest || std::find(wanted.begin(), wanted.end(), 0) != wanted.end();
+    timed(sample_times.raster_ms, [&] {
+        if (!rest) {
+            rasterizer.rasterize(gbuffer, workers, wanted);
+        }
+        if (in_parts && settings.fresh_gbuffer) {
+            rasterizer.rasterize(fresh, workers);
+        }
+    });
     addRasterTimes(sample_times);
     counters = rasterizer.counters();
 }
@@ -208,46 +223,11 @@ static void freeze(FrameState& frame) {
     }
 }
 
-/// To −128 … 127, modulo one pixel.
-static int wrapped(int64_t offset_fx8) {
-    return int((offset_fx8 + 128) & 255) - 128;
-}
-
-/// Where the point infinitely far along (x, y, z) is on the screen, pixels from the centre.
-static std::optional<std::array<double, 2>> farPoint(const glm::dmat4& view_projection, double x,
-                                                     double y, double z, int width, int height) {
-    const auto row = [&](int i) {
-        return view_projection[0][i] * x + view_projection[1][i] * y + view_projection[2][i] * z;
-    };
-    const double w = row(3);
-    if (!(w > 0)) {
-        return std::nullopt;
-    }
-    return std::array{row(0) / w * (0.5 * width), row(1) / w * (-0.5 * height)};
-}
-
-/// The gather finds a surface's old samples where the motion has carried them: the pattern stays
-/// even on the surface only if the samples move along with it. What holds for all surfaces under a
-/// turning camera holds for the far ones under any. A camera at rest has the plain pattern.
 void FrameLoop::State::followCamera(const FrameState& frame) {
-    const glm::dmat4& now = frame.camera.view_projection;
-    const glm::dmat4& before = frame.camera_before.view_projection;
-    if (!gathers() || settings.policy.jitter == JitterPattern::none || frame.cut || now == before) {
-        drift = {};
-        return;
-    }
-    const double x = now[0][3], y = now[1][3], z = now[2][3];  // straight ahead
-    const auto here = farPoint(now, x, y, z, settings.width, settings.height);
-    const auto there = farPoint(before, x, y, z, settings.width, settings.height);
-    if (!here || !there) {
-        return;
-    }
-    const auto moved = [&](size_t axis, int old_fx8) {
-        constexpr double kFarthest = 1e6;  // pixels
-        const double d = std::clamp((*there)[axis] - (*here)[axis], -kFarthest, kFarthest);
-        return wrapped(old_fx8 + int64_t(std::floor(d * 256 + 0.5)));
-    };
-    drift = {moved(0, drift.x_fx8), moved(1, drift.y_fx8)};
+    const bool follows = gathers() && settings.policy.jitter != JitterPattern::none && !frame.cut;
+    drift = follows ? driftAfter(drift, frame.camera, frame.camera_before, settings.width,
+                                 settings.height)
+                    : SampleOffset{};
 }
 
 /// Where the sample lies: a camera file's word goes before the policy's pattern.
@@ -258,7 +238,7 @@ SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample
     const TaaPolicy& policy = settings.policy;
     const SampleOffset offset =
         jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, sample);
-    return {wrapped(offset.x_fx8 - drift.x_fx8), wrapped(offset.y_fx8 - drift.y_fx8)};
+    return {withinPixel(offset.x_fx8 - drift.x_fx8), withinPixel(offset.y_fx8 - drift.y_fx8)};
 }
 
 TaaSettings FrameLoop::State::taaSettings() const {
@@ -279,38 +259,42 @@ bool FrameLoop::State::rests(const FrameState& frame) {
 }
 
 /// Takes the sample that was just rasterized into the history.
-void FrameLoop::State::resolve(const FrameState& frame, SampleOffset offset) {
-    if (!gathers()) {
-        const LaboratoryFrame evidence{
-            .reset = frame.cut, .jitter_x_fx8 = offset.x_fx8, .jitter_y_fx8 = offset.y_fx8};
-        laboratory.resolve(gbuffer, evidence, settings.policy, settings.simd, workers);
+void FrameLoop::State::resolve(const FrameState& frame, const TaaFrame& evidence) {
+    if (gathers()) {
+        taa.resolve(gbuffer, evidence, taaSettings(), workers);
         return;
     }
-    const TaaFrame evidence{.reset = frame.cut,
-                            .shading_changed = frame.lighting_changed,
-                            .changed_surfaces = frame.changed_surfaces,
-                            .turning_surfaces = frame.turning_surfaces,
-                            .jitter_x_fx8 = offset.x_fx8,
-                            .jitter_y_fx8 = offset.y_fx8};
-    taa.resolve(gbuffer, evidence, taaSettings(), workers);
+    laboratory.resolve(gbuffer,
+                       {.reset = frame.cut,
+                        .jitter_x_fx8 = evidence.jitter_x_fx8,
+                        .jitter_y_fx8 = evidence.jitter_y_fx8},
+                       settings.policy, settings.simd, workers);
 }
 
 /// Renders one frame into the history, which must end with the frame before (or `frame` is a
 /// historyStart).
-void FrameLoop::State::resolveFrame(int frame) {
+void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
     FrameState state = frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
     state.cut |= frame == historyStart(frame);
-    for (uint32_t i = 0; i < uint32_t(settings.subframes); ++i) {
-        const uint32_t sample = sampleOf(frame, i);
+    for (int i = 0; i < settings.subframes; ++i) {
+        const uint32_t sample = sampleOf(frame, uint32_t(i));
         followCamera(state);
         const SampleOffset offset = offsetOf(state, sample);
+        const TaaFrame evidence{.reset = state.cut,
+                                .shading_changed = state.lighting_changed,
+                                .changed_surfaces = state.changed_surfaces,
+                                .turning_surfaces = state.turning_surfaces,
+                                .jitter_x_fx8 = offset.x_fx8,
+                                .jitter_y_fx8 = offset.y_fx8,
+                                .looked_at = looked_at && i + 1 == settings.subframes,
+                                .repeats = settings.subframes - 1 - i};
         const bool rest = rests(state);
         counters = {};
         if (!rest || settings.fresh_gbuffer) {
-            rasterizeSample(state, offset, sample);
+            rasterizeSample(state, offset, sample, gathers() ? &evidence : nullptr, rest);
         }
         if (!rest) {
-            timed(times.taa_ms, [&] { resolve(state, offset); });
+            timed(times.taa_ms, [&] { resolve(state, evidence); });
             shown = false;
         }
         freeze(state);
@@ -323,7 +307,7 @@ void FrameLoop::State::resolveHistory(int frame) {
     const int first = resolved_frame == frame - 1 ? frame : historyStart(frame);
     for (int replayed = first; replayed <= frame; ++replayed) {
         times = {};
-        resolveFrame(replayed);
+        resolveFrame(replayed, replayed == frame);
     }
     if (sharpens() && !shown) {
         timed(times.taa_ms, [&] { sharpenResolved(); });
@@ -426,7 +410,7 @@ FrameResult FrameLoop::State::result() const {
     FrameResult result;
     result.output = output.view();
     result.linear = colour();
-    result.gbuffer = &gbuffer;
+    result.gbuffer = in_parts && settings.fresh_gbuffer ? &fresh : &gbuffer;
     result.times = times;
     if (temporal() && gathers()) {
         result.sample_count = taa.sampleCount();

@@ -76,11 +76,12 @@ struct Taa::State {
     int tiles_x = 0;
     int sample_cap = 0;
     std::vector<TileMemory> tiles;
+    std::vector<uint8_t> wanted;       ///< plan()
     std::vector<uint32_t> change_age;  ///< empty until something changes
     std::vector<uint32_t> turning;     ///< Job::turning; empty: null
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
-    bool first = true;  ///< this frame has no past
+    bool first = true;  ///< no frame was resolved since the last reset
     SpatialFilter spatial;
 
     TileRect rectOf(int tile) const {
@@ -88,9 +89,9 @@ struct Taa::State {
         return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
     }
 
-    void begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings);
+    void begin(int new_width, int new_height, bool reset, const TaaSettings& settings);
     void noteChanges(const TaaFrame& frame, bool now);
-    bool planTiles(const GBuffer& gbuffer, bool shading_changed);
+    bool planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats);
     bool finished(int cap) const;
     void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
@@ -101,17 +102,19 @@ struct Taa::State {
     void keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile);
 };
 
-/// Makes the planes fit; a changed size, a changed ring and a reset leave nothing of the past.
-void Taa::State::begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings) {
-    const bool resized = width != gbuffer.width() || height != gbuffer.height();
-    if (resized || frame.reset || ring.size() != size_t(settings.ring)) {
+/// Makes the planes fit; a changed size, a changed ring and a reset leave nothing of the past. Done
+/// twice for a frame it changes nothing more.
+void Taa::State::begin(int new_width, int new_height, bool reset, const TaaSettings& settings) {
+    const bool resized = width != new_width || height != new_height;
+    if (resized || reset || ring.size() != size_t(settings.ring)) {
         frames = 0;
+        first = true;
         since_change = settings.ring;
     }
     if (resized || ring.size() != size_t(settings.ring)) {
-        width = gbuffer.width();
-        height = gbuffer.height();
-        tiles_x = gbuffer.tiles_x;
+        width = new_width;
+        height = new_height;
+        tiles_x = (width + kTileSize - 1) / kTileSize;
         cursor = 0;
         ring.resize(size_t(settings.ring));
         for (SlotPlanes& slot : ring) {
@@ -126,11 +129,10 @@ void Taa::State::begin(const GBuffer& gbuffer, const TaaFrame& frame, const TaaS
         shown_count.resize(width, height);
     }
     // Complete sums may have too much, and settled ones may not be so any more.
-    if (frames == 0 || settings.sample_cap < sample_cap ||
+    if (first || settings.sample_cap < sample_cap ||
         std::min(taa::kSettled, settings.sample_cap) != std::min(taa::kSettled, sample_cap)) {
-        tiles.assign(gbuffer.tiles.size(), TileMemory{});
+        tiles.assign(size_t(tiles_x) * size_t((height + kTileSize - 1) / kTileSize), TileMemory{});
     }
-    first = frames == 0;
 }
 
 /// Keeps for each surface how many kept frames ago its shading changed; `now`: some did.
@@ -159,15 +161,16 @@ void Taa::State::noteChanges(const TaaFrame& frame, bool now) {
 
 /// Notes what each tile needs; whether any needs the ring. Where nothing happens, the ring is of
 /// use only until it is full and the sums are shown: later frames would say the same.
-bool Taa::State::planTiles(const GBuffer& gbuffer, bool shading_changed) {
+bool Taa::State::planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats) {
+    const bool overwritten = repeats >= int(ring.size());
     bool any = false;
     for (size_t i = 0; i < tiles.size(); ++i) {
         TileMemory& tile = tiles[i];
-        const TileFacts& facts = gbuffer.tiles[i];
-        tile.tested = shading_changed || facts.moved;
+        tile.tested = shading_changed || facts[i].moved;
         tile.quiet = tile.tested ? 0 : tile.quiet;
-        tile.keeps = first || facts.camera_moved || !tile.settled || tile.quiet < int(ring.size());
-        any |= tile.keeps;
+        tile.keeps =
+            first || facts[i].camera_moved || !tile.settled || tile.quiet < int(ring.size());
+        any |= tile.keeps && (!overwritten || tile.tested || facts[i].camera_moved);
     }
     for (TileMemory& tile : tiles) {
         tile.keeps = any;  // all samples of a slot lie alike
@@ -177,7 +180,7 @@ bool Taa::State::planTiles(const GBuffer& gbuffer, bool shading_changed) {
 
 /// Without motion or change the picture stays.
 bool Taa::State::finished(int cap) const {
-    return frames > 0 && cap == sample_cap &&
+    return !first && cap == sample_cap &&
            std::all_of(tiles.begin(), tiles.end(),
                        [](const TileMemory& t) { return t.summed && t.finished; });
 }
@@ -310,20 +313,37 @@ bool Taa::rest(const TaaSettings& settings) {
     return true;
 }
 
+std::span<const uint8_t> Taa::plan(int width, int height, std::span<const TileFacts> facts,
+                                   const TaaFrame& frame, const TaaSettings& settings) {
+    State& s = *state_;
+    s.begin(width, height, frame.reset, settings);
+    assert(facts.size() == s.tiles.size());
+    s.planTiles(facts, !s.first && changesShading(frame), frame.repeats);
+    const bool same_cap = settings.sample_cap == s.sample_cap;
+    s.wanted.resize(s.tiles.size());
+    std::transform(s.tiles.begin(), s.tiles.end(), s.wanted.begin(), [&](const TileMemory& tile) {
+        return uint8_t(tile.keeps || !tile.summed || !tile.finished || !same_cap ? 1 : 0);
+    });
+    return s.wanted;
+}
+
 void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettings& settings,
                   Workers& workers) {
     assert(gbuffer.planes.motion);
     assert(settings.sample_cap >= 1 && settings.sample_cap <= 255);
     assert(settings.ring >= 1 && settings.ring <= kMaxRing);
     State& s = *state_;
-    s.begin(gbuffer, frame, settings);
+    s.begin(gbuffer.width(), gbuffer.height(), frame.reset, settings);
     const bool shading_changed = !s.first && changesShading(frame);
     if (!s.first && !shading_changed && allStill(gbuffer) && rest(settings)) {
         return;
     }
     s.started.note(gbuffer, s.first, workers);
-    if (s.planTiles(gbuffer, shading_changed)) {
+    const bool first = s.first;
+    if (s.planTiles(gbuffer.tiles, shading_changed, frame.repeats)) {
         s.advanceRing(frame, shading_changed, workers);
+    } else if (first) {
+        s.started.countAges(first, settings.ring);
     }
     const Job job = s.makeJob(gbuffer, settings);
     const taa::TileKernels kernels = taa::tileKernels(settings.simd);
@@ -333,7 +353,11 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
         }
     });
     s.sample_cap = settings.sample_cap;
-    if (s.first) {
+    s.first = false;
+    if (!frame.looked_at) {
+        return;
+    }
+    if (first) {
         s.showFirst(gbuffer, frame, settings.simd, workers);
         return;
     }
@@ -356,7 +380,7 @@ ImageView<const uint8_t> Taa::sampleCount() const {
 }
 
 bool Taa::converged() const {
-    return state_->frames > 0 &&
+    return !state_->first &&
            std::all_of(state_->tiles.begin(), state_->tiles.end(),
                        [](const TileMemory& t) { return t.summed && t.finished && !t.changed; });
 }

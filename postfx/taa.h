@@ -32,6 +32,11 @@ struct TaaFrame {
     std::span<const uint64_t> turning_surfaces{};
     /// Where this frame's samples lie, from the pixels' centres, −128 … 127.
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
+    /// False: the image of this frame is not asked for, and only what later ones need is made.
+    bool looked_at = true;
+    /// So many frames follow in which nothing moves or changes, and all but the last of them are
+    /// not looked at.
+    int repeats = 0;
 };
 
 /// Linear light, fx12, planar.
@@ -46,6 +51,12 @@ class Taa {
     ~Taa();
     Taa(const Taa&) = delete;
     Taa& operator=(const Taa&) = delete;
+
+    /// Which tiles (1; else 0) of a G-buffer of this size and these facts the frame's resolve()
+    /// reads. In the others the planes may keep samples of the frame in which they were last read.
+    /// Valid until the next call.
+    std::span<const uint8_t> plan(int width, int height, std::span<const TileFacts> facts,
+                                  const TaaFrame& frame, const TaaSettings& settings);
 
     /// Accumulates the G-buffer's colours. Needs its motion plane (planes.motion), and its normal
     /// plane when present takes part in validation. A changed size resets by itself.

@@ -1,5 +1,6 @@
 #include "rasterizer/rasterizer.h"
 
+#include <cassert>
 #include <vector>
 
 #include "rasterizer/internal/tile.h"
@@ -104,31 +105,48 @@ struct Rasterizer::State {
 Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
 Rasterizer::~Rasterizer() = default;
 
-void Rasterizer::transformAndBin(const DrawList& list, const FrameView& view,
-                                 const RasterSettings& settings, Workers& workers) {
+std::span<const TileFacts> Rasterizer::setUp(const DrawList& list, const FrameView& view,
+                                             const RasterSettings& settings) {
     State& s = *state_;
     s.settings = settings;
     internal::setUpFrame(list, view, settings, s.setup);
+    return s.setup.facts;
+}
+
+void Rasterizer::transformAndBin(const DrawList& list, const FrameView& view,
+                                 const RasterSettings& settings, Workers& workers) {
+    setUp(list, view, settings);
+    transformAndBin(workers);
+}
+
+void Rasterizer::transformAndBin(Workers& workers) {
+    State& s = *state_;
+    const DrawList& list = *s.setup.tables.list;
     s.cutVertices(list);
     s.cutTriangles(list);
     s.prepare(s.bin_scratch, workers.threads());
-    const internal::GeometryKernels& kernels = internal::geometryFor(settings.simd);
+    const internal::GeometryKernels& kernels = internal::geometryFor(s.settings.simd);
     s.transform(kernels, workers);
-    s.bin(kernels, view, workers);
+    s.bin(kernels, *s.setup.tables.view, workers);
     s.counters = {};
     for (const auto& each : s.bin_scratch) {
         s.counters += each->counters;
     }
 }
 
-void Rasterizer::rasterize(GBuffer& out, Workers& workers) {
+void Rasterizer::rasterize(GBuffer& out, Workers& workers, std::span<const uint8_t> wanted) {
     State& s = *state_;
     const FrameView& view = *s.setup.tables.view;
     out.resize(view.width, view.height, s.settings.planes);
     s.prepare(s.scratch, workers.threads());
-    s.counters.tiles = out.tiles.size();
+    assert(wanted.empty() || wanted.size() == out.tiles.size());
+    out.tiles = s.setup.facts;
+    const auto left_out = [&](int tile) { return !wanted.empty() && wanted[size_t(tile)] == 0; };
     workers.parallelFor(int(out.tiles.size()), 1, [&](int begin, int end, int worker) {
         for (int i = begin; i < end; ++i) {
+            if (left_out(i)) {
+                continue;
+            }
             internal::renderTile(s.setup, s.bins, s.settings, i % out.tiles_x, i / out.tiles_x, out,
                                  *s.scratch[size_t(worker)]);
         }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
@@ -80,14 +81,22 @@ class Rasterizer {
     Rasterizer(const Rasterizer&) = delete;
     Rasterizer& operator=(const Rasterizer&) = delete;
 
-    /// Vertex stage, clipping, setup and binning. `list` and `view` must stay valid until
-    /// rasterize() has returned. Preconditions are those of DrawList and FrameView (asserted).
+    /// The facts of the view's tiles, before anything is drawn. Preconditions as below.
+    /// transformAndBin(workers) goes on from here.
+    std::span<const TileFacts> setUp(const DrawList& list, const FrameView& view,
+                                     const RasterSettings& settings);
+    void transformAndBin(Workers& workers);
+
+    /// Both in one. Vertex stage, clipping, setup and binning. `list` and `view` must stay valid
+    /// until rasterize() has returned. Preconditions are those of DrawList and FrameView
+    /// (asserted).
     void transformAndBin(const DrawList& list, const FrameView& view,
                          const RasterSettings& settings, Workers& workers);
 
     /// Tiles: coverage, visibility, shading. Resizes `out` and writes every pixel of every plane
-    /// in settings.planes.
-    void rasterize(GBuffer& out, Workers& workers);
+    /// in settings.planes, in those tiles that are `wanted` (not 0; empty: all); elsewhere the
+    /// planes stay. Facts are this frame's everywhere.
+    void rasterize(GBuffer& out, Workers& workers, std::span<const uint8_t> wanted = {});
 
     const RasterCounters& counters() const;
 

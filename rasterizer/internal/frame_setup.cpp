@@ -134,7 +134,7 @@ class MovedTiles {
         const int ty1 = std::min(setup_.tiles_y - 1, tileOf(y1, setup_.tiles_y));
         for (int ty = ty0; ty <= ty1; ++ty) {
             for (int tx = tx0; tx <= tx1; ++tx) {
-                setup_.moved_tiles[size_t(ty) * size_t(setup_.tiles_x) + size_t(tx)] = 1;
+                setup_.facts[size_t(ty) * size_t(setup_.tiles_x) + size_t(tx)].moved = true;
             }
         }
     }
@@ -188,7 +188,9 @@ void setUpFrame(const DrawList& list, const FrameView& view, const RasterSetting
     assert(settings.mip_bias_fx8 >= -4096 && settings.mip_bias_fx8 <= 4096);
     out.tiles_x = (view.width + kTileSize - 1) / kTileSize;
     out.tiles_y = (view.height + kTileSize - 1) / kTileSize;
-    out.moved_tiles.assign(size_t(out.tiles_x) * size_t(out.tiles_y), 0);
+    const bool camera_moved = view.view_projection != view.view_projection_before;
+    out.facts.assign(size_t(out.tiles_x) * size_t(out.tiles_y),
+                     {.moved = false, .camera_moved = camera_moved});
     out.surfaces.assign(1, Surface{});
     out.instances.clear();
     out.vertex_jobs.clear();
@@ -206,7 +208,7 @@ void setUpFrame(const DrawList& list, const FrameView& view, const RasterSetting
     t.list = &list;
     t.view = &view;
     t.planes = settings.planes;
-    t.camera_moved = view.view_projection != view.view_projection_before;
+    t.camera_moved = camera_moved;
     // Of a camera that stands still exactly the identity, so that its motion is exactly zero.
     t.reproject = fromAffine(kIdentity);
     if (t.camera_moved) {

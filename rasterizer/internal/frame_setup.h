@@ -18,7 +18,7 @@ struct FrameSetup {
     std::vector<size_t> first_vertex;    ///< of each instance in the frame's vertex arrays
     size_t vertex_count = 0;
     int tiles_x = 0, tiles_y = 0;
-    std::vector<uint8_t> moved_tiles;  ///< 1 where TileFacts::moved will be
+    std::vector<TileFacts> facts;  ///< row by row
 };
 
 void setUpFrame(const DrawList& list, const FrameView& view, const RasterSettings& settings,

@@ -120,10 +120,7 @@ void renderTile(const FrameSetup& setup, const FrameBins& bins, const RasterSett
 
     collectTriangles(bins, tx, ty, tile, scratch);
 
-    TileFacts& facts = out.tiles[size_t(ty) * size_t(out.tiles_x) + size_t(tx)];
-    facts = {};
-    facts.camera_moved = frame.camera_moved;
-    facts.moved = setup.moved_tiles[size_t(ty) * size_t(out.tiles_x) + size_t(tx)] != 0;
+    const TileFacts& facts = setup.facts[size_t(ty) * size_t(out.tiles_x) + size_t(tx)];
     const TilePlanes planes = tile.planes;
     const bool still_motion = facts.still() && planes.motion != nullptr;
     uint8_t& motion_is_zero = out.motion_is_zero[size_t(ty) * size_t(out.tiles_x) + size_t(tx)];
@@ -144,6 +141,7 @@ void renderTile(const FrameSetup& setup, const FrameBins& bins, const RasterSett
         writeStillMotion(planes, tile.width, tile.height, motion_is_zero);
     }
     RasterCounters& counters = scratch.counters;
+    ++counters.tiles;
     counters.tiles_empty += tile.triangle_count == 0 ? 1 : 0;
     counters.blocks_hidden += tile.blocks_hidden;
     counters.blocks_outside += tile.blocks_outside;

@@ -86,23 +86,50 @@ TEST_CASE("frame_loop: a frozen scene wakes for a moving object, a light, a mate
     }
 }
 
-TEST_CASE("frame_loop: a fresh G-buffer is drawn at rest, too, and changes nothing else",
+TEST_CASE("frame_loop: only tiles in which something is new are drawn, and nobody sees it",
           "[unit][frame_loop]") {
     const Scene scene = boxOnFloor(kFinished + 6, kFinished + 9);
-    FrameSettings settings = settingsOf(97, 70);
+    FrameSettings settings = settingsOf(400, 280);
     Workers workers(1, Schedule::serial);
     FrameLoop lazy(scene, settings, workers);
     settings.fresh_gbuffer = true;
     FrameLoop eager(scene, settings, workers);
-    settings.anti_aliasing = AntiAliasing::none;
+    constexpr uint64_t kTiles = 7 * 5;
     uint64_t last = 0;
-    for (int frame = 0; frame < kFinished + 20; ++frame) {
+    int frames_in_parts = 0;
+    for (int frame = 0; frame < kFinished + 90; ++frame) {
         const FrameResult seen = eager.render(frame);
         INFO("frame " << frame);
         REQUIRE(hashPlane(lazy.render(frame).output) == hashPlane(seen.output));
         const uint64_t sample = hashPlane(std::as_const(seen.gbuffer->red).view());
         CHECK(sample != last);
-        CHECK(eager.counters().tiles == 4);
+        CHECK(eager.counters().tiles >= kTiles);
+        CHECK(lazy.counters().tiles <= kTiles);
+        frames_in_parts += lazy.counters().tiles > 0 && lazy.counters().tiles < kTiles ? 1 : 0;
         last = sample;
+    }
+    CHECK(frames_in_parts > 30);
+    CHECK(lazy.counters().tiles == 0);
+}
+
+TEST_CASE("frame_loop: frames that nobody looks at leave no trace", "[unit][frame_loop]") {
+    // Replayed frames and sub-frames are not looked at.
+    const Scene scene = boxOnFloor(4, 12);
+    Workers workers(1, Schedule::serial);
+    for (const int ring : {2, 8}) {
+        for (const int subframes : {1, 3, 20}) {
+            FrameSettings settings = settingsOf(97, 70);
+            settings.subframes = subframes;
+            settings.policy.ring = ring;
+            FrameLoop seen(scene, settings, workers);
+            for (int frame = 0; frame < 16; ++frame) {
+                const uint64_t expected = hashPlane(seen.render(frame).output);
+                if (frame % 5 == 3) {
+                    FrameLoop unseen(scene, settings, workers);
+                    INFO("frame " << frame << ", " << subframes << " sub-frames, ring " << ring);
+                    CHECK(hashPlane(unseen.render(frame).output) == expected);
+                }
+            }
+        }
     }
 }
