@@ -10,8 +10,10 @@ namespace still::peer {
 namespace {
 
 constexpr int kReferenceSamples = 64;
-constexpr double kSamePicture_db = 36;
-constexpr double kSameMotion = 0.98;
+// llvmpipe reaches 41 dB and 99.98 %; SwiftShader, which places vertices on a coarser grid, 34 dB
+// and 97.8 %. Without normal maps, or half a pixel beside, the courtyard has less than 31 dB.
+constexpr double kSamePicture_db = 33;
+constexpr double kSameMotion = 0.97;
 constexpr float kMotionTolerance_px = 1.0f / 16;
 
 struct OwnFrame {

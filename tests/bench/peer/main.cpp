@@ -33,7 +33,7 @@ struct Options {
     std::vector<std::string> motions;
     int threads = int(std::max(1u, std::thread::hardware_concurrency()));
     int frames = 20;
-    bool json = false, check = false;
+    bool msaa = false, json = false, check = false;
 };
 
 /// Peak since restartMemoryPeak(), in bytes; 0 where the system does not say.
@@ -69,6 +69,9 @@ Json timesJson(const PeerTimes& times) {
         {"gbuffer", statistics(times.gbuffer_ms)}, {"taa", statistics(times.taa_ms)},
         {"output", statistics(times.output_ms)},
     };
+    if (!times.msaa_ms.empty()) {
+        json["stages"]["msaa4"] = statistics(times.msaa_ms);
+    }
     json["total"] = statistics(times.frame_ms);
     json["pipelined_ms"] = times.pipelined_ms;
     json["peak_rss_bytes"] = memoryPeak();
@@ -174,7 +177,7 @@ class Run {
                 printCheck(options_.scene, name(motion), *check);
             }
         } else {
-            const Result<PeerTimes> times = measure(peer, options_.frames);
+            const Result<PeerTimes> times = measure(peer, options_.frames, options_.msaa);
             if (!times) {
                 return tl::make_unexpected(times.error());
             }
@@ -211,6 +214,7 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--libraries", o.libraries,
                    "Folder with libEGL.so of ANGLE for swiftshader, default /usr/lib/chromium");
     app.add_option("--png", o.png, "Write the last resolved frame");
+    app.add_flag("--msaa", o.msaa, "Measure the G-buffer with four samples a pixel as well");
     app.add_flag("--check", o.check, "Compare the pictures instead of taking times");
     app.add_flag("--json", o.json, "Print one JSON object");
 }

@@ -74,6 +74,17 @@ Result<void> measureParts(PeerFrames& peer, const Prepared& frame, bool counts, 
     });
 }
 
+Result<void> measureMultisampled(PeerFrames& peer, const Prepared& frame, bool counts,
+                                 PeerTimes& out) {
+    return timed(peer.gl, counts, out.msaa_ms, [&] {
+        return peer.passes.beginMultisampled(kMultisamples, peer.scene.background)
+            .and_then([&] {
+                return peer.drawer.draw(peer.scene, frame.state, frame.view, Pass::gbuffer);
+            })
+            .map([&] { peer.passes.averageSamples(); });
+    });
+}
+
 /// Calls run(frame, counts) for the warm-up frames and then for those that count.
 template <class Run>
 Result<void> eachFrame(int frames, Run&& run) {
@@ -92,7 +103,7 @@ Result<void> PeerFrames::render(int frame, Pass pass) {
     return drawGbuffer(*this, prepared, pass).map([&] { passes.resolve(frame == 0); });
 }
 
-Result<PeerTimes> measure(PeerFrames& peer, int frames) {
+Result<PeerTimes> measure(PeerFrames& peer, int frames, bool multisampling) {
     PeerTimes times;
     const auto stages = [&](int frame, bool counts) {
         return measureStages(peer, prepare(peer, frame), counts, frame == 0, times);
@@ -107,6 +118,9 @@ Result<PeerTimes> measure(PeerFrames& peer, int frames) {
     };
     const auto parts = [&](int frame, bool counts) {
         return measureParts(peer, prepare(peer, frame), counts, times);
+    };
+    const auto multisampled = [&](int frame, bool counts) {
+        return measureMultisampled(peer, prepare(peer, frame), counts, times);
     };
     double start_ms = 0;
     const auto pipelined = [&](int frame, bool counts) {
@@ -125,7 +139,10 @@ Result<PeerTimes> measure(PeerFrames& peer, int frames) {
     }
     peer.gl.glFinish();
     times.pipelined_ms = (nowMs() - start_ms) / frames;
-    return times;
+    if (multisampling) {
+        done = eachFrame(frames, multisampled);
+    }
+    return done.map([&] { return times; });
 }
 
 }  // namespace still::peer

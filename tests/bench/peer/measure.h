@@ -8,6 +8,8 @@
 
 namespace still::peer {
 
+constexpr int kMultisamples = 4;
+
 /// Milliseconds, one entry a frame; `threads` of the driver at work.
 struct PeerTimes {
     std::vector<double> depth_ms;    ///< depth alone
@@ -15,6 +17,7 @@ struct PeerTimes {
     std::vector<double> gbuffer_ms;  ///< the G-buffer
     std::vector<double> taa_ms;      ///< the resolve
     std::vector<double> output_ms;   ///< encoding to 8 bits
+    std::vector<double> msaa_ms;     ///< the G-buffer with kMultisamples, and averaging its colour
     std::vector<double> frame_ms;    ///< G-buffer and resolve, finished only at the end of both
     /// The same, all frames one after the other and finished only at the end: the mean.
     double pipelined_ms = 0;
@@ -32,7 +35,8 @@ struct PeerFrames {
     Result<void> render(int frame, Pass pass = Pass::gbuffer);
 };
 
-/// Takes the times of `frames` ≥ 1 frames after some that are not measured, kind by kind.
-Result<PeerTimes> measure(PeerFrames& peer, int frames);
+/// Takes the times of `frames` ≥ 1 frames after some that are not measured, kind by kind. Targets
+/// for multisampling are large, so that is measured only when asked for.
+Result<PeerTimes> measure(PeerFrames& peer, int frames, bool multisampling);
 
 }  // namespace still::peer

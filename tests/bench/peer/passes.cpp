@@ -12,6 +12,11 @@ namespace {
 
 constexpr float kKeep = 0.9f;  ///< weight of history
 
+constexpr GLenum kColourFormat = GL_RGBA16F;  ///< of the history, too
+constexpr GLenum kNormalFormat = GL_RGBA8;
+constexpr GLenum kMotionFormat = GL_RG16F;
+constexpr GLenum kDepthFormat = GL_DEPTH_COMPONENT32F;
+
 Result<GLuint> makeFramebuffer(const Gl& gl, const std::vector<GLuint>& colours, GLuint depth) {
     GLuint name = 0;
     gl.glGenFramebuffers(1, &name);
@@ -52,15 +57,15 @@ Result<void> Passes::makeFramebuffers() {
     const auto target = [&](GLenum format, GLint filter = GL_NEAREST) {
         return makeTarget(gl, format, width_, height_, filter);
     };
-    colour_ = target(GL_RGBA16F);
-    normal_ = target(GL_RGBA8);
-    motion_ = target(GL_RG16F);
-    depth_ = target(GL_DEPTH_COMPONENT32F);
+    colour_ = target(kColourFormat);
+    normal_ = target(kNormalFormat);
+    motion_ = target(kMotionFormat);
+    depth_ = target(kDepthFormat);
     display_ = target(GL_RGBA8);
     Result<GLuint> made = makeFramebuffer(gl, {colour_, normal_, motion_}, depth_);
     gbuffer_fb_ = made.value_or(0);
     for (int i = 0; i < 2 && made; ++i) {
-        history_[i] = target(GL_RGBA16F, GL_LINEAR);
+        history_[i] = target(kColourFormat, GL_LINEAR);
         made = makeFramebuffer(gl, {history_[i]}, 0);
         history_fb_[i] = made.value_or(0);
     }
@@ -100,8 +105,45 @@ Result<void> Passes::makePrograms() {
 }
 
 void Passes::beginGbuffer(const std::array<float, 3>& background) {
+    clearGbuffer(gbuffer_fb_, background);
+}
+
+Result<void> Passes::beginMultisampled(int samples, const std::array<float, 3>& background) {
+    if (multisampled_fb_ == 0) {
+        const Gl& gl = *gl_;
+        constexpr GLenum kFormats[] = {kColourFormat, kNormalFormat, kMotionFormat, kDepthFormat};
+        constexpr GLenum kPlaces[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                      GL_COLOR_ATTACHMENT2, GL_DEPTH_ATTACHMENT};
+        GLuint buffers[4] = {};
+        gl.glGenRenderbuffers(4, buffers);
+        gl.glGenFramebuffers(1, &multisampled_fb_);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER, multisampled_fb_);
+        for (int i = 0; i < 4; ++i) {
+            gl.glBindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
+            gl.glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, kFormats[i], width_,
+                                                height_);
+            gl.glFramebufferRenderbuffer(GL_FRAMEBUFFER, kPlaces[i], GL_RENDERBUFFER, buffers[i]);
+        }
+        gl.glDrawBuffers(3, kPlaces);
+        if (gl.glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+            return fail("the driver has no such multisampling");
+        }
+    }
+    clearGbuffer(multisampled_fb_, background);
+    return {};
+}
+
+void Passes::averageSamples() {
     const Gl& gl = *gl_;
-    gl.glBindFramebuffer(GL_FRAMEBUFFER, gbuffer_fb_);
+    gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, multisampled_fb_);
+    gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, history_fb_[newest_]);
+    gl.glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
+}
+
+void Passes::clearGbuffer(GLuint framebuffer, const std::array<float, 3>& background) {
+    const Gl& gl = *gl_;
+    gl.glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl.glViewport(0, 0, width_, height_);
     const float colour[] = {background[0], background[1], background[2], 0.0f};
     const float zeros[] = {0, 0, 0, 0}, farthest = reversed_ ? 0.0f : 1.0f;

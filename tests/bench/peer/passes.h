@@ -22,6 +22,10 @@ class Passes {
 
     /// Binds the G-buffer and makes it empty: `background` is linear light.
     void beginGbuffer(const std::array<float, 3>& background);
+    /// The same with several samples a pixel, to average their colours afterwards. Makes its
+    /// targets when called first.
+    Result<void> beginMultisampled(int samples, const std::array<float, 3>& background);
+    void averageSamples();
     /// Binds and clears the depth plane alone.
     void beginDepth();
     /// Takes the G-buffer into the history; `reset` forgets what was there.
@@ -38,6 +42,7 @@ class Passes {
     Passes(const Gl& gl, int width, int height) : gl_(&gl), width_(width), height_(height) {}
     Result<void> makeFramebuffers();
     Result<void> makePrograms();
+    void clearGbuffer(GLuint framebuffer, const std::array<float, 3>& background);
     void drawWhole(GLuint framebuffer, GLuint program);
     void bindTexture(int unit, GLuint texture);
     std::vector<float> readFloats(GLuint framebuffer, int attachment);
@@ -49,6 +54,7 @@ class Passes {
     GLuint colour_ = 0, normal_ = 0, motion_ = 0, depth_ = 0;
     GLuint history_[2] = {}, display_ = 0;
     GLuint gbuffer_fb_ = 0, depth_fb_ = 0, history_fb_[2] = {}, display_fb_ = 0;
+    GLuint multisampled_fb_ = 0;
     GLuint temporal_ = 0, encode_ = 0, empty_vertices_ = 0;
     GLint keep_ = -1;
     int newest_ = 0;  ///< which history is
