@@ -6,6 +6,7 @@
 namespace still::peer {
 
 struct PictureCheck {
+    Driver driver = Driver::llvmpipe;
     /// PSNR of a frame with one sample in the pixels' centres, the peer's against Stillframe's.
     double raw_db = 0;
     double motion = 0;      ///< share of pixels whose motion is the same within 1/16 pixel

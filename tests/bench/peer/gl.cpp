@@ -131,6 +131,7 @@ Result<Gl> openGl(Driver driver, const std::string& folder, int threads) {
     if (!complete) {
         return fail(library + ": has not the functions of OpenGL ES 3");
     }
+    gl.driver = driver;
     gl.renderer = textOf(gl, GL_RENDERER);
     gl.version = textOf(gl, GL_VERSION);
     if (textOf(gl, GL_EXTENSIONS).find("GL_EXT_clip_control") != std::string::npos) {

@@ -87,7 +87,8 @@ struct Gl {
     STILL_PEER_GL_FUNCTIONS(STILL_PEER_DECLARE)
 #undef STILL_PEER_DECLARE
     PFNGLCLIPCONTROLEXTPROC glClipControlEXT = nullptr;  ///< null where depth cannot be reversed
-    std::string renderer, version;                       ///< as the driver names itself
+    Driver driver = Driver::llvmpipe;
+    std::string renderer, version;  ///< as the driver names itself
 };
 
 /// `threads` are those that rasterize. `folder` has libEGL.so of ANGLE; empty: the usual places.

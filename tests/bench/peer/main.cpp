@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "demos/scenes/bench_scenes.h"
+#include "demos/stillframe/json_report.h"
 #include "demos/stillframe/options.h"
+#include "demos/stillframe/peak_memory.h"
 #include "demos/stillframe/png.h"
 #include "demos/stillframe/scene_source.h"
 #include "tests/bench/peer/check.h"
@@ -19,9 +19,9 @@
 namespace still::peer {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using command::ExitCode;
 using command::Failure;
+using command::Json;
 using command::Outcome;
 
 /// Tells CTest that the test was skipped: this machine has no such driver.
@@ -36,45 +36,21 @@ struct Options {
     bool msaa = false, json = false, check = false;
 };
 
-/// Peak since restartMemoryPeak(), in bytes; 0 where the system does not say.
-uint64_t memoryPeak() {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);) {
-        if (line.starts_with("VmHWM:")) {
-            return std::stoull(line.substr(6)) * 1024;
-        }
-    }
-    return 0;
-}
-
-/// What it took to load the scene does not count against the peer.
-void restartMemoryPeak() {
-    std::ofstream("/proc/self/clear_refs") << "5";
-}
-
-/// Nearest rank for the 95th percentile; the median of an even number is the mean of the middle
-/// two.
-Json statistics(std::vector<double> times_ms) {
-    std::sort(times_ms.begin(), times_ms.end());
-    const size_t count = times_ms.size();
-    return {{"min_ms", times_ms[0]},
-            {"median_ms", (times_ms[(count - 1) / 2] + times_ms[count / 2]) / 2},
-            {"p95_ms", times_ms[(count * 95 + 99) / 100 - 1]}};
-}
-
 Json timesJson(const PeerTimes& times) {
     Json json;
     json["stages"] = {
-        {"depth", statistics(times.depth_ms)},     {"lambert", statistics(times.lambert_ms)},
-        {"gbuffer", statistics(times.gbuffer_ms)}, {"taa", statistics(times.taa_ms)},
-        {"output", statistics(times.output_ms)},
+        {"depth", command::statisticsJson(times.depth_ms)},
+        {"lambert", command::statisticsJson(times.lambert_ms)},
+        {"gbuffer", command::statisticsJson(times.gbuffer_ms)},
+        {"taa", command::statisticsJson(times.taa_ms)},
+        {"output", command::statisticsJson(times.output_ms)},
     };
     if (!times.msaa_ms.empty()) {
-        json["stages"]["msaa4"] = statistics(times.msaa_ms);
+        json["stages"]["msaa4"] = command::statisticsJson(times.msaa_ms);
     }
-    json["total"] = statistics(times.frame_ms);
+    json["total"] = command::statisticsJson(times.frame_ms);
     json["pipelined_ms"] = times.pipelined_ms;
-    json["peak_rss_bytes"] = memoryPeak();
+    json["peak_rss_bytes"] = command::peakMemoryBytes();
     return json;
 }
 
@@ -134,7 +110,7 @@ class Run {
         if (!passes) {
             return command::fileError(passes.error().message);
         }
-        restartMemoryPeak();
+        command::resetPeakMemory();  // loading does not count against the peer
         for (BenchMotion motion : motions) {
             if (auto done = one(motion, *drawer, *passes); !done) {
                 return command::fileError(done.error().message);

@@ -1,19 +1,15 @@
 #include "tests/bench/peer/measure.h"
 
-#include <chrono>
-
+#include "demos/stillframe/clock.h"
 #include "engine/jitter.h"
 
 namespace still::peer {
 namespace {
 
+using command::nowMs;
+
 /// The driver compiles and allocates in the first frames.
 constexpr int kWarmUp = 4;
-
-double nowMs() {
-    using Milliseconds = std::chrono::duration<double, std::milli>;
-    return Milliseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// A frame whose state is known: that is not the driver's work, so it is not measured.
 struct Prepared {
