@@ -46,7 +46,7 @@ Result<Egl> openEgl(const std::string& library) {
         egl.find(egl.createContext, "eglCreateContext") &&
         egl.find(egl.makeCurrent, "eglMakeCurrent");
     if (!complete) {
-        return fail(library + ": has not the functions of EGL 1.5");
+        return fail(library + ": lacks functions of EGL 1.5");
     }
     return egl;
 }
@@ -129,7 +129,7 @@ Result<Gl> openGl(Driver driver, const std::string& folder, int threads) {
     STILL_PEER_GL_FUNCTIONS(STILL_PEER_LOAD)
 #undef STILL_PEER_LOAD
     if (!complete) {
-        return fail(library + ": has not the functions of OpenGL ES 3");
+        return fail(library + ": lacks functions of OpenGL ES 3");
     }
     gl.driver = driver;
     gl.renderer = textOf(gl, GL_RENDERER);
