@@ -96,15 +96,14 @@ class MovedTiles {
   public:
     MovedTiles(FrameSetup& setup, const FrameView& view) : setup_(setup), view_(view) {}
 
-    void mark(const Mesh& mesh, const Matrix& to_pixels) {
-        const auto [x0, x1] = std::minmax_element(mesh.x.begin(), mesh.x.end());
-        const auto [y0, y1] = std::minmax_element(mesh.y.begin(), mesh.y.end());
-        const auto [z0, z1] = std::minmax_element(mesh.z.begin(), mesh.z.end());
+    void mark(const PositionBox& bounds, const Matrix& to_pixels) {
         double box[4] = {1e30, 1e30, -1e30, -1e30};
         for (int corner = 0; corner < 8; ++corner) {
-            const double p[3] = {double((corner & 1) != 0 ? *x1 : *x0),
-                                 double((corner & 2) != 0 ? *y1 : *y0),
-                                 double((corner & 4) != 0 ? *z1 : *z0)};
+            double p[3];
+            for (int axis = 0; axis < 3; ++axis) {
+                const bool high = (corner >> axis & 1) != 0;
+                p[axis] = double(high ? bounds.high[axis] : bounds.low[axis]);
+            }
             double q[4];
             for (int r = 0; r < 4; ++r) {
                 const double* m = to_pixels.m[r];
@@ -164,9 +163,12 @@ void setUpInstance(const DrawList& list, const FrameView& view, const RasterSett
         s.pixels_now = toFloat(pixels_now);
         s.pixels_before = toFloat(pixels_before);
         if (mesh.vertexCount() > 0) {
+            const PositionBox bounds =
+                geometryFor(settings.simd)
+                    .boundVertices(mesh.x.data(), mesh.y.data(), mesh.z.data(), mesh.x.size());
             MovedTiles marker(out, view);
-            marker.mark(mesh, pixels_now);
-            marker.mark(mesh, pixels_before);
+            marker.mark(bounds, pixels_now);
+            marker.mark(bounds, pixels_before);
         }
     }
     out.instances.push_back(s);

@@ -2,6 +2,7 @@
 // What the vertex and triangle stages hand on, and the table of their kernels. Each kernel stands
 // in NAME-inl.h (Highway) and NAME_reference.cpp (the plain scalar truth).
 
+#include <cstddef>
 #include <cstdint>
 
 #include "rasterizer/draw_list.h"
@@ -54,6 +55,11 @@ struct VertexJob {
     ScreenVertex* out;
 };
 
+/// Bounds in object space.
+struct PositionBox {
+    float low[3], high[3];
+};
+
 // ---- triangle stage --------------------------------------------------------------------------
 
 constexpr int kTileShift = 6;
@@ -63,9 +69,9 @@ static_assert(1 << kTileShift == kTileSize);
 /// depend on the threads.
 constexpr uint32_t kChunkTriangles = 1024;
 
-/// Triangles up to this size in x and in y stay in 16-bit coordinates relative to any tile that
-/// they touch, and all products of two coordinates in 32 bits.
-constexpr int32_t kCompactExtentFx8 = 32 << 8;
+/// Triangles up to this size in x and in y, a tile's, stay in 16-bit coordinates relative to any
+/// tile that they touch, touch at most two in a row, and products of their extents fit 32 bits.
+constexpr int32_t kCompactExtentFx8 = 64 << 8;
 
 /// Bits of TileTriangle::id.
 constexpr uint32_t kTriangleMask = 0xFFFF;
@@ -132,6 +138,8 @@ static_assert(kMaxTargetSize / kTileSize <= 256);
 
 struct GeometryKernels {
     void (*transformVertices)(const VertexJob& job, int begin, int end);
+    /// `count` ≥ 1. Serial, and so fast that it need not be kept from frame to frame.
+    PositionBox (*boundVertices)(const float* x, const float* y, const float* z, size_t count);
     /// Replaces the batch's contents.
     void (*cullTriangles)(const TriangleJob& job, TriangleBatch& batch);
 };

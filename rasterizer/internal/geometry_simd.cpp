@@ -51,7 +51,7 @@ namespace still::internal {
 namespace HWY_NAMESPACE {
 
 const GeometryKernels* geometryTable() {
-    static constexpr GeometryKernels kKernels{transformVertices, cullTriangles};
+    static constexpr GeometryKernels kKernels{transformVertices, boundVertices, cullTriangles};
     return &kKernels;
 }
 

@@ -132,7 +132,8 @@ void cullTrianglesReference(const TriangleJob& job, TriangleBatch& batch) {
 }
 
 const GeometryKernels& referenceGeometry() {
-    static constexpr GeometryKernels kKernels{transformVerticesReference, cullTrianglesReference};
+    static constexpr GeometryKernels kKernels{transformVerticesReference, boundVerticesReference,
+                                              cullTrianglesReference};
     return kKernels;
 }
 

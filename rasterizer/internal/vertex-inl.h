@@ -78,6 +78,28 @@ void transformVertices(const VertexJob& job, int begin, int end) {
     }
 }
 
+PositionBox boundVertices(const float* x, const float* y, const float* z, size_t count) {
+    const hn::CappedTag<float, 16> d;
+    const size_t lanes = hn::Lanes(d);
+    if (count < lanes) {
+        return boundVerticesReference(x, y, z, count);
+    }
+    PositionBox box;
+    const float* const axes[3] = {x, y, z};
+    for (int axis = 0; axis < 3; ++axis) {
+        auto low = hn::LoadU(d, axes[axis] + count - lanes);  // the rest after whole vectors, too
+        auto high = low;
+        for (size_t i = 0; i + lanes <= count; i += lanes) {
+            const auto v = hn::LoadU(d, axes[axis] + i);
+            low = hn::Min(low, v);
+            high = hn::Max(high, v);
+        }
+        box.low[axis] = hn::GetLane(hn::MinOfLanes(d, low));
+        box.high[axis] = hn::GetLane(hn::MaxOfLanes(d, high));
+    }
+    return box;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace still::internal
 HWY_AFTER_NAMESPACE();

@@ -3,6 +3,7 @@
 
 #include "rasterizer/internal/vertex_reference.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "rasterizer/fixed.h"
@@ -56,6 +57,17 @@ void transformVerticesReference(const VertexJob& job, int begin, int end) {
     for (int i = begin; i < end; ++i) {
         job.out[i] = projectVertex(job, transformVertex(job.clip, job.x[i], job.y[i], job.z[i]));
     }
+}
+
+PositionBox boundVerticesReference(const float* x, const float* y, const float* z, size_t count) {
+    PositionBox box;
+    const float* const axes[3] = {x, y, z};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax_element(axes[axis], axes[axis] + count);
+        box.low[axis] = *low;
+        box.high[axis] = *high;
+    }
+    return box;
 }
 
 }  // namespace still::internal

@@ -13,7 +13,8 @@ struct ClipVertex {
 ClipVertex transformVertex(const MatrixF& clip, float x, float y, float z);
 ScreenVertex projectVertex(const VertexJob& job, const ClipVertex& v);
 
-/// GeometryKernels::transformVertices.
+/// The kernels of GeometryKernels.
 void transformVerticesReference(const VertexJob& job, int begin, int end);
+PositionBox boundVerticesReference(const float* x, const float* y, const float* z, size_t count);
 
 }  // namespace still::internal
