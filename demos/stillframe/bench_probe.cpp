@@ -5,7 +5,7 @@
 #include <cstring>
 #include <memory>
 
-#include "demos/stillframe/bench_kernels.h"
+#include "demos/stillframe/bench_probe_kernels.h"
 #include "demos/stillframe/clock.h"
 #include "rasterizer/workers.h"
 

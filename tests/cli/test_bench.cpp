@@ -9,7 +9,7 @@
 #include "demos/scenes/bench_scenes.h"
 #include "demos/scenes/builtin.h"
 #include "demos/stillframe/bench.h"
-#include "demos/stillframe/bench_kernels.h"
+#include "demos/stillframe/bench_probe_kernels.h"
 #include "demos/stillframe/bench_run.h"
 #include "demos/stillframe/bench_scaling.h"
 #include "demos/stillframe/statistics.h"

@@ -1,9 +1,9 @@
-#include "demos/stillframe/bench_kernels.h"
+#include "demos/stillframe/bench_probe_kernels.h"
 
 #if STILL_SIMD
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "demos/stillframe/bench_kernels.cpp"
+#define HWY_TARGET_INCLUDE "demos/stillframe/bench_probe_kernels.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target must come before highway.h.
 #include <hwy/cache_control.h>
