@@ -49,7 +49,6 @@ Json timesJson(const PeerTimes& times) {
         json["stages"]["msaa4"] = command::statisticsJson(times.msaa_ms);
     }
     json["total"] = command::statisticsJson(times.frame_ms);
-    json["pipelined_ms"] = times.pipelined_ms;
     json["peak_rss_bytes"] = command::peakMemoryBytes();
     return json;
 }
@@ -64,7 +63,6 @@ void printTimes(const std::string& scene, const char* motion, const Json& result
         line(stage.c_str(), times);
     }
     line("total", result["total"]);
-    std::printf("  in a row %7.2f\n", result["pipelined_ms"].get<double>());
 }
 
 Json checkJson(const PictureCheck& check) {

@@ -118,24 +118,11 @@ Result<PeerTimes> measure(PeerFrames& peer, int frames, bool multisampling) {
     const auto multisampled = [&](int frame, bool counts) {
         return measureMultisampled(peer, prepare(peer, frame), counts, times);
     };
-    double start_ms = 0;
-    const auto pipelined = [&](int frame, bool counts) {
-        if (counts && start_ms == 0) {
-            peer.gl.glFinish();
-            start_ms = nowMs();
-        }
-        return peer.render(frame);
-    };
-    Result<void> done = eachFrame(frames, stages)
-                            .and_then([&] { return eachFrame(frames, whole); })
-                            .and_then([&] { return eachFrame(frames, parts); })
-                            .and_then([&] { return eachFrame(frames, pipelined); });
-    if (!done) {
-        return tl::make_unexpected(done.error());
-    }
-    peer.gl.glFinish();
-    times.pipelined_ms = (nowMs() - start_ms) / frames;
-    if (multisampling) {
+    Result<void> done =
+        eachFrame(frames, stages).and_then([&] { return eachFrame(frames, whole); }).and_then([&] {
+            return eachFrame(frames, parts);
+        });
+    if (done && multisampling) {
         done = eachFrame(frames, multisampled);
     }
     return done.map([&] { return times; });

@@ -19,8 +19,6 @@ struct PeerTimes {
     std::vector<double> output_ms;   ///< encoding to 8 bits
     std::vector<double> msaa_ms;     ///< the G-buffer with kMultisamples, and averaging its colour
     std::vector<double> frame_ms;    ///< G-buffer and resolve, finished only at the end of both
-    /// The same, all frames one after the other and finished only at the end: the mean.
-    double pipelined_ms = 0;
 };
 
 /// A scene under one motion, its drawer and its planes.
