@@ -23,23 +23,30 @@ using taa::Stillness;
 using taa::TileRect;
 
 struct SlotPlanes {
-    Image<uint32_t> red_green, blue_id, depths, motion, owner;
+    enum Plane { red, green, blue, id, depth, owner_depth, owner, motion_x, motion_y, normal };
+    std::array<Image<int16_t>, normal + 1> planes;
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
 
     void resize(int width, int height) {
-        for (Image<uint32_t>* plane : {&red_green, &blue_id, &depths, &motion, &owner}) {
-            plane->resize(width, height);
+        for (Image<int16_t>& plane : planes) {
+            plane.resize(width, height);
         }
     }
-    SlotOut pointers() {
-        return {red_green.view().data, blue_id.view().data, depths.view().data, motion.view().data,
-                owner.view().data,     jitter_x_fx8,        jitter_y_fx8};
+    /// As a SlotOut or a SlotIn.
+    template <class Pointers>
+    Pointers pointers() {
+        const auto of = [&](Plane plane) { return planes[plane].view().data; };
+        return {.colour = {of(red), of(green), of(blue)},
+                .id = of(id),
+                .depth = of(depth),
+                .owner_depth = of(owner_depth),
+                .owner = of(owner),
+                .motion = {of(motion_x), of(motion_y)},
+                .normal = of(normal),
+                .jitter_x_fx8 = jitter_x_fx8,
+                .jitter_y_fx8 = jitter_y_fx8};
     }
 };
-
-taa::SlotIn readOnly(const SlotOut& p) {
-    return {p.red_green, p.blue_id, p.depths, p.motion, p.owner, p.jitter_x_fx8, p.jitter_y_fx8};
-}
 
 /// What is remembered of a tile between frames.
 struct TileMemory {
@@ -67,8 +74,9 @@ constexpr uint32_t kLongAgo = 255;
 
 struct Taa::State {
     std::vector<SlotPlanes> ring;
-    int cursor = 0;  ///< index of this frame's slot
-    int frames = 0;  ///< slots that belong to the present run of frames
+    int cursor = 0;       ///< index of this frame's slot
+    int frames = 0;       ///< slots that belong to the present run of frames
+    Image<int16_t> hint;  ///< Job::hint
     std::array<Image<uint16_t>, 3> mean, shown;
     std::array<Image<int8_t>, 3> rest;
     Image<uint8_t> count, shown_count;
@@ -120,6 +128,7 @@ void Taa::State::begin(int new_width, int new_height, bool reset, const TaaSetti
         for (SlotPlanes& slot : ring) {
             slot.resize(width, height);
         }
+        hint.resize(width, height);
         for (size_t c = 0; c < 3; ++c) {
             mean[c].resize(width, height);
             rest[c].resize(width, height);
@@ -217,9 +226,10 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     job.frames = frames;
     for (int k = 0; k < frames; ++k) {
         const int slot = (cursor + settings.ring - k) % settings.ring;
-        job.slot[k] = readOnly(ring[size_t(slot)].pointers());
+        job.slot[k] = ring[size_t(slot)].pointers<taa::SlotIn>();
     }
-    job.record = ring[size_t(cursor)].pointers();
+    job.record = ring[size_t(cursor)].pointers<SlotOut>();
+    job.hint = hint.view().data;
     for (size_t c = 0; c < 3; ++c) {
         job.sums.mean[c] = mean[c].view().data;
         job.sums.rest[c] = rest[c].view().data;
@@ -241,7 +251,7 @@ void Taa::State::forgetStarted(Workers& workers) {
     if (!started.any()) {
         return;
     }
-    const Image<uint32_t>& last = ring[size_t(cursor)].blue_id;
+    const Image<int16_t>& last = ring[size_t(cursor)].planes[SlotPlanes::id];
     workers.parallelFor(int(tiles.size()), 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
             if (tiles[size_t(tile)].summed && tiles[size_t(tile)].tested) {

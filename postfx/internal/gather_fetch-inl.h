@@ -1,151 +1,140 @@
 // Samples of a slot for a group of pixels: the 2×2 around each place, loaded in as few pieces as
-// they lie in. Included once per target by taa_simd.cpp.
+// they lie in, with their weights. Included once per target by taa_simd.cpp.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::taa {
 namespace HWY_NAMESPACE {
 
-/// Words of the four samples around the pixels' places: left and right of the upper row, then of
-/// the lower one.
+/// Lanes whose 2×2 samples are loaded at once.
+struct Cluster {
+    ptrdiff_t upper, lower;  ///< index of the upper left and lower left sample of lane 0
+    MS lanes;
+};
+struct Clusters {
+    Cluster of[kHalves];
+    int count = 0;
+};
+
+/// One value for each of the four samples: left and right of the upper row, then of the lower one.
 struct Four {
-    V32 of[4];
+    VS of[4];
 };
 
-/// Where the four samples are. Lanes whose samples lie next to each other as the pixels do form a
-/// cluster, which is loaded at once.
-struct Site {
-    VI32 ix, iy;    ///< of the upper left sample
-    V32 fx, fy;     ///< 0 … 255
-    V32 weight[4];  ///< 0 outside the picture
-    V32 wanted;     ///< sum of the weights
-    VI32 ex, ey;    ///< place of the upper left sample, 1/64 pixel
-};
-
-/// More clusters than this are gathered.
-constexpr int kMaxClusters = 5;
-
-/// Calls load(offset, lanes) for clusters of lanes: sample `index` of lane i is at offset + i. What
-/// is left goes to gather(lanes).
-template <class Load, class Gather>
-HWY_INLINE void forClusters(VI32 index, Mask32 lanes, Load&& load, Gather&& gather) {
-    const D32 d;
-    const DI32 di;
-    const VI32 offset = hn::Sub(index, hn::Iota(di, 0));
-    const int32_t first = hn::GetLane(offset);
-    if (hn::AllTrue(di, hn::Eq(offset, hn::Set(di, first)))) {
-        load(first, lanes);
-        return;
+HWY_INLINE Four fetchFour(const int16_t* plane, const Clusters& clusters) {
+    const Cluster& first = clusters.of[0];
+    Four four{{load(plane + first.upper), load(plane + first.upper + 1), load(plane + first.lower),
+               load(plane + first.lower + 1)}};
+    for (int i = 1; i < clusters.count; ++i) {
+        const Cluster& c = clusters.of[i];
+        four.of[0] = hn::IfThenElse(c.lanes, load(plane + c.upper), four.of[0]);
+        four.of[1] = hn::IfThenElse(c.lanes, load(plane + c.upper + 1), four.of[1]);
+        four.of[2] = hn::IfThenElse(c.lanes, load(plane + c.lower), four.of[2]);
+        four.of[3] = hn::IfThenElse(c.lanes, load(plane + c.lower + 1), four.of[3]);
     }
-    alignas(64) int32_t offsets[kMaxLanes];
-    hn::StoreU(offset, di, offsets);
-    Mask32 left = lanes;
-    for (int cluster = 0; cluster < kMaxClusters; ++cluster) {
-        const intptr_t lane = hn::FindFirstTrue(d, left);
-        if (lane < 0) {
-            return;
-        }
-        const Mask32 same = hn::And(left, maskOf(hn::Eq(offset, hn::Set(di, offsets[lane]))));
-        load(offsets[lane], same);
-        left = hn::AndNot(same, left);
-    }
-    if (!hn::AllFalse(d, left)) {
-        gather(left);
-    }
-}
-
-/// Rows above and below the picture are not memory, so the samples of a site are addressed by rows
-/// inside; those outside weigh nothing.
-struct Address {
-    VI32 upper, lower;  ///< index of the left sample
-    Mask32 lanes;       ///< lanes with any weight
-};
-
-HWY_INLINE Address addressOf(const Job& job, const Site& site) {
-    const DI32 di;
-    const VI32 zero = hn::Zero(di);
-    const VI32 last = hn::Set(di, job.height - 1);
-    const VI32 stride = hn::Set(di, int32_t(job.stride));
-    const VI32 y0 = hn::Min(hn::Max(site.iy, zero), last);
-    const VI32 y1 = hn::Min(hn::Max(hn::Add(site.iy, hn::Set(di, 1)), zero), last);
-    const Mask32 lanes = hn::Ne(site.wanted, hn::Zero(D32()));
-    // Lanes without weight follow the first one of the row, whatever they would have read.
-    const VI32 x = hn::Min(hn::Max(site.ix, hn::Set(di, -1)), hn::Set(di, job.width - 1));
-    return {hn::Add(hn::Mul(y0, stride), x), hn::Add(hn::Mul(y1, stride), x), lanes};
-}
-
-HWY_INLINE void fetchRow(const uint32_t* plane, VI32 index, Mask32 lanes, V32& left, V32& right) {
-    const D32 d;
-    forClusters(
-        index, lanes,
-        [&](int32_t offset, Mask32 same) {
-            left = hn::IfThenElse(same, hn::LoadU(d, plane + offset), left);
-            right = hn::IfThenElse(same, hn::LoadU(d, plane + offset + 1), right);
-        },
-        [&](Mask32 rest) {
-            left = hn::IfThenElse(rest, hn::GatherIndex(d, plane, index), left);
-            right = hn::IfThenElse(rest, hn::GatherIndex(d, plane + 1, index), right);
-        });
-}
-
-/// Three planes at once: the clusters are the same.
-struct Samples {
-    Four red_green, blue_id, depths;
-};
-
-HWY_INLINE Four loadFour(const uint32_t* plane, ptrdiff_t upper, ptrdiff_t lower) {
-    const D32 d;
-    return {{hn::LoadU(d, plane + upper), hn::LoadU(d, plane + upper + 1),
-             hn::LoadU(d, plane + lower), hn::LoadU(d, plane + lower + 1)}};
-}
-
-HWY_INLINE void takeFour(Mask32 lanes, const uint32_t* plane, ptrdiff_t upper, ptrdiff_t lower,
-                         Four& four) {
-    const D32 d;
-    four.of[0] = choose(lanes, hn::LoadU(d, plane + upper), four.of[0]);
-    four.of[1] = choose(lanes, hn::LoadU(d, plane + upper + 1), four.of[1]);
-    four.of[2] = choose(lanes, hn::LoadU(d, plane + lower), four.of[2]);
-    four.of[3] = choose(lanes, hn::LoadU(d, plane + lower + 1), four.of[3]);
-}
-
-HWY_INLINE Samples fetchSamples(const SlotIn& slot, const Address& address) {
-    const D32 d;
-    const DI32 di;
-    const VI32 lane = hn::Iota(di, 0);
-    const VI32 upper = hn::Sub(address.upper, lane), lower = hn::Sub(address.lower, lane);
-    const ptrdiff_t upper0 = hn::GetLane(upper), lower0 = hn::GetLane(lower);
-    Samples s{loadFour(slot.red_green, upper0, lower0), loadFour(slot.blue_id, upper0, lower0),
-              loadFour(slot.depths, upper0, lower0)};
-    const auto differ = [&](ptrdiff_t u, ptrdiff_t l) {
-        const VI32 other = hn::Or(hn::Xor(upper, hn::Set(di, int32_t(u))),
-                                  hn::Xor(lower, hn::Set(di, int32_t(l))));
-        return hn::Not(maskOf(hn::Eq(other, hn::Zero(di))));
-    };
-    Mask32 left = hn::And(address.lanes, differ(upper0, lower0));
-    if (hn::AllFalse(d, left)) {
-        return s;
-    }
-    alignas(64) int32_t uppers[kMaxLanes], lowers[kMaxLanes];
-    hn::Store(upper, di, uppers);
-    hn::Store(lower, di, lowers);
-    while (!hn::AllFalse(d, left)) {
-        const intptr_t first = hn::FindFirstTrue(d, left);
-        const ptrdiff_t u = uppers[first], l = lowers[first];
-        const Mask32 others = hn::And(left, differ(u, l));
-        const Mask32 same = hn::AndNot(others, left);
-        takeFour(same, slot.red_green, u, l, s.red_green);
-        takeFour(same, slot.blue_id, u, l, s.blue_id);
-        takeFour(same, slot.depths, u, l, s.depths);
-        left = others;
-    }
-    return s;
-}
-
-HWY_INLINE Four fetchFour(const uint32_t* plane, const Address& address) {
-    const V32 zero = hn::Zero(D32());
-    Four four{{zero, zero, zero, zero}};
-    fetchRow(plane, address.upper, address.lanes, four.of[0], four.of[1]);
-    fetchRow(plane, address.lower, address.lanes, four.of[2], four.of[3]);
     return four;
+}
+
+/// Places in a frame: whole pixels and 1/256 pixel beyond them, 0 … 255.
+struct PlaceLanes {
+    VS column, row, x_fx8, y_fx8;
+};
+
+HWY_INLINE void moveAxis(VS& whole, VS& part, VS by_fx8) {
+    const VS sum = hn::Add(part, hn::And(by_fx8, set(255)));
+    whole = hn::Add(whole, hn::Add(hn::ShiftRight<8>(by_fx8), hn::ShiftRight<8>(sum)));
+    part = hn::And(sum, set(255));
+}
+
+/// The samples around the places.
+struct Site {
+    VS right, lower;  ///< axisWeight()
+    VS cx, cy;        ///< places less those of the upper left samples, 1/64 pixel rounded up
+    VS weight[4];     ///< 0 outside the picture
+    MS lanes;         ///< that have samples
+    bool inner;       ///< no sample lies outside
+};
+
+HWY_INLINE VS axisWeights(VS part) {
+    const VS scaled = hn::Add(hn::Mul(hn::Sub(part, set(51)), set(53)), set(271));
+    return hn::Min(hn::Max(hn::ShiftRight<9>(scaled), zero()), set(kAxisWeight));
+}
+
+/// Weights of samples outside become 0.
+HWY_NOINLINE void cutAtBorder(const Job& job, VS column, VS row, Site& site) {
+    const VS one = set(1);
+    const MS in[4] = {hn::Eq(beyond(column, job.width - 1), zero()),
+                      hn::Eq(beyond(hn::Add(column, one), job.width - 1), zero()),
+                      hn::Eq(beyond(row, job.height - 1), zero()),
+                      hn::Eq(beyond(hn::Add(row, one), job.height - 1), zero())};
+    for (int t = 0; t < 4; ++t) {
+        site.weight[t] = hn::IfThenElseZero(hn::And(in[t & 1], in[2 + (t >> 1)]), site.weight[t]);
+    }
+}
+
+/// The samples of this frame, whose places are the same in all pixels. False near the picture's
+/// border.
+HWY_INLINE bool findSiteNow(const Job& job, int x, int y, MS lanes, Site& site,
+                            Clusters& clusters) {
+    const int sx = x * 256 - job.slot[0].jitter_x_fx8, sy = y * 256 - job.slot[0].jitter_y_fx8;
+    const int x0 = sx >> 8, y0 = sy >> 8;
+    if (x0 < 0 || x0 + kHalves >= job.width || y0 < 0 || y0 + 1 >= job.height) {
+        return false;
+    }
+    const int right = axisWeight(sx & 255), lower = axisWeight(sy & 255);
+    site.right = set(right);
+    site.lower = set(lower);
+    site.cx = set(((sx & 255) + 3) >> 2);
+    site.cy = set(((sy & 255) + 3) >> 2);
+    const int across[2] = {kAxisWeight - right, right}, down[2] = {kAxisWeight - lower, lower};
+    for (int t = 0; t < 4; ++t) {
+        site.weight[t] = hn::IfThenElseZero(lanes, set(across[t & 1] * down[t >> 1]));
+    }
+    site.lanes = lanes;
+    site.inner = true;
+    const ptrdiff_t at = y0 * job.stride + x0;
+    clusters.of[0] = {at, at + job.stride, lanes};
+    clusters.count = 1;
+    return true;
+}
+
+/// False when no lane has samples.
+HWY_NOINLINE bool findSite(const Job& job, const SlotIn& slot, const PlaceLanes& place, MS alive,
+                           Site& site, Clusters& clusters) {
+    const DS d;
+    VS column = place.column, row = place.row, x = place.x_fx8, y = place.y_fx8;
+    moveAxis(column, x, set(-slot.jitter_x_fx8));
+    moveAxis(row, y, set(-slot.jitter_y_fx8));
+    const VS one = set(1);
+    const VS out =
+        hn::Or(beyond(hn::Add(column, one), job.width), beyond(hn::Add(row, one), job.height));
+    site.lanes = hn::And(alive, hn::Eq(out, zero()));
+    if (!any(site.lanes)) {
+        return false;
+    }
+    site.right = axisWeights(x);
+    site.lower = axisWeights(y);
+    site.cx = hn::ShiftRight<2>(hn::Add(x, set(3)));
+    site.cy = hn::ShiftRight<2>(hn::Add(y, set(3)));
+    const VS full = set(kAxisWeight);
+    const VS across[2] = {hn::Sub(full, site.right), site.right};
+    const VS down[2] = {hn::IfThenElseZero(site.lanes, hn::Sub(full, site.lower)),
+                        hn::IfThenElseZero(site.lanes, site.lower)};
+    for (int t = 0; t < 4; ++t) {
+        site.weight[t] = hn::Mul(across[t & 1], down[t >> 1]);
+    }
+    clusters.count = 0;
+    site.inner = true;
+    forClusters(hn::Sub(column, hn::Iota(d, 0)), row, site.lanes, [&](int x0, int y0, MS lanes) {
+        // Rows outside are not memory: others are read in their stead, and weigh nothing.
+        const ptrdiff_t upper = y0 < 0 ? 0 : y0;
+        const ptrdiff_t lower = y0 + 1 < job.height ? y0 + 1 : y0;
+        clusters.of[clusters.count++] = {upper * job.stride + x0, lower * job.stride + x0, lanes};
+        site.inner &= x0 >= 0 && x0 + kHalves < job.width && y0 >= 0 && y0 + 1 < job.height;
+    });
+    if (!site.inner) {
+        cutAtBorder(job, column, row, site);
+    }
+    return true;
 }
 
 }  // namespace HWY_NAMESPACE

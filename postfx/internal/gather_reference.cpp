@@ -19,12 +19,15 @@ struct Layer {
     int tolerance = 0;
     Motion motion;
 
-    int depthAt(int k) const { return depth + step * k; }
-    int toleranceAt(int k) const { return tolerance + ((std::abs(step) * k) >> kStepShift); }
+    int depthAt(int k) const { return std::clamp(depth + step * k, 0, 65535); }
+    int toleranceAt(int k) const {
+        return tolerance + (std::min(std::abs(step) * k, 32767) >> kStepShift);
+    }
 };
 
 Layer layerOf(int surface, int depth, int expected, Motion motion, int slope) {
-    return {surface, depth, expected - depth, kDepthTolerance + kSlopeFactor * slope, motion};
+    return {surface, depth, heldStep(expected - depth), kDepthTolerance + kSlopeFactor * slope,
+            motion};
 }
 
 enum class Place : uint8_t { nearer, same, farther };
@@ -72,7 +75,7 @@ bool inside(const Job& job, int x, int y) {
 ptrdiff_t farthestInWindow(const Job& job, int x, int y) {
     // Columns first; ties: middle before top before bottom, middle before left before right.
     const auto better = [&](ptrdiff_t a, ptrdiff_t b) {
-        return job.now.depth[b] < job.now.depth[a] ? b : a;
+        return logDepth16(job.now.depth[b]) < logDepth16(job.now.depth[a]) ? b : a;
     };
     const auto column = [&](int cx) {
         const ptrdiff_t centre = y * job.stride + cx;
@@ -125,7 +128,8 @@ Window lookAround(const Job& job, int x, int y) {
     if (std::max(std::abs(seen.motion.x_fx8), std::abs(seen.motion.y_fx8)) > kFast) {
         window.frames = std::min(window.frames, kFastFrames);
     }
-    if (job.turning != nullptr && job.turning[seen.surface] != 0) {
+    const bool may_turn = seen.moved || seen.inferred;
+    if (may_turn && job.turning != nullptr && job.turning[seen.surface] != 0) {
         window.frames = std::min(window.frames, kTurningFrames);
     }
     window.slide = slideOf(seen.motion, window.far.motion);
@@ -135,7 +139,19 @@ Window lookAround(const Job& job, int x, int y) {
 }
 
 int surfaceAt(const SlotIn& slot, ptrdiff_t at) {
-    return highHalf(slot.blue_id[at]) & int(kSurfaceMask);
+    return slot.id[at] & int(kSurfaceMask);
+}
+
+int depthAt(const SlotIn& slot, ptrdiff_t at) {
+    return plusOffset(slot.depth[at]);
+}
+
+bool movedAt(const SlotIn& slot, ptrdiff_t at) {
+    return (slot.id[at] & int(kMovedBit)) != 0;
+}
+
+Motion motionAt(const SlotIn& slot, ptrdiff_t at) {
+    return {slot.motion[0][at], slot.motion[1][at]};
 }
 
 bool staleShading(const Job& job, const Window& window, int k, Place place, const SlotIn& slot,
@@ -147,7 +163,7 @@ bool staleShading(const Job& job, const Window& window, int k, Place place, cons
     if (!window.moved || place != Place::same || window.normal == 0) {
         return false;
     }
-    const SmallNormal then = decodeNormal(slot.owner[at] >> 16);
+    const SmallNormal then = decodeNormal(uint16_t(slot.normal[at]));
     const SmallNormal now = decodeNormal(window.normal);
     return !similarlyLit(dotOf(then, now), dotOf(then, then), dotOf(now, now));
 }
@@ -183,10 +199,10 @@ void follow(const Job& job, int x, int y, const Layer& layer, int frames, Visit&
             return;
         }
         const ptrdiff_t nearest = ny * job.stride + nx;
-        const int difference = highHalf(slot.depths[nearest]) - layer.depthAt(k);
-        if (k > 0 && int(slot.owner[nearest] & kSurfaceMask) == layer.surface &&
+        const int difference = plusOffset(slot.owner_depth[nearest]) - layer.depthAt(k);
+        if (k > 0 && (slot.owner[nearest] & int(kSurfaceMask)) == layer.surface &&
             std::abs(difference) <= 2 * layer.toleranceAt(k)) {
-            motion = unpackMotion(slot.motion[nearest]);
+            motion = motionAt(slot, nearest);
         }
     }
 }
@@ -198,7 +214,8 @@ void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, int k, int weight, int
            ex,
            ey,
            behind,
-           {lowHalf(slot.red_green[at]), highHalf(slot.red_green[at]), lowHalf(slot.blue_id[at])}};
+           {plusOffset(slot.colour[0][at]), plusOffset(slot.colour[1][at]),
+            plusOffset(slot.colour[2][at])}};
     taps.moments.add(weight, ex, ey);
     taps.old_weight += k > 0 ? weight : 0;
 }
@@ -208,7 +225,7 @@ void collectFar(const Job& job, int x, int y, const Window& window, Taps& taps) 
     follow(job, x, y, window.far, std::min(kFarFrames, job.frames),
            [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion) {
                const int surface = surfaceAt(slot, at);
-               const int depth = lowHalf(slot.depths[at]);
+               const int depth = depthAt(slot, at);
                const bool behind = placeOf(window.owner, k, surface, depth) == Place::farther;
                const bool there = placeOf(window.far, k, surface, depth) != Place::nearer;
                if (behind && there && !staleShading(job, window, k, Place::farther, slot, at)) {
@@ -226,8 +243,7 @@ bool leftBehind(const Window& window, int k, int depth) {
 
 /// Behind an owner at rest something went by that is not behind it any more.
 bool passedBehind(const Window& window, const SlotIn& slot, ptrdiff_t at, Place place) {
-    return place == Place::farther && !window.moved &&
-           (highHalf(slot.blue_id[at]) & kMovedBit) != 0 &&
+    return place == Place::farther && !window.moved && movedAt(slot, at) &&
            surfaceAt(slot, at) != window.far.surface;
 }
 
@@ -237,15 +253,14 @@ void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps) 
         job, x, y, window.owner, std::min(window.frames, job.frames),
         [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion motion) {
             const int surface = surfaceAt(slot, at);
-            const int depth = lowHalf(slot.depths[at]);
+            const int depth = depthAt(slot, at);
             const Place place = placeOf(window.owner, k, surface, depth);
             if (k > 0 && passedBehind(window, slot, at, place)) {
                 return;
             }
             const bool plain = place == Place::same || (place == Place::farther && window.layered);
-            const bool tap_moved = (highHalf(slot.blue_id[at]) & kMovedBit) != 0;
-            if (!plain || (window.moved && tap_moved)) {
-                const Motion other = unpackMotion(slot.motion[at]);
+            if (!plain || (window.moved && movedAt(slot, at))) {
+                const Motion other = motionAt(slot, at);
                 const bool left = job.start_age != nullptr && uint32_t(k) > job.start_age[surface];
                 if (k > 0 &&
                     (left || other.x_fx8 == kNoHistory || slideOf(other, motion) * k > kMaxSlide)) {

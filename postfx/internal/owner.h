@@ -12,10 +12,14 @@ struct Owner {
     int expected = 0;  ///< logDepth16 that it had in the previous frame
     Motion motion;
     uint32_t normal = 0;  ///< compactNormal(), 0 without normals
-    int slope = 0;        ///< its own change of depth per pixel, 0 where unknown
+    int slope = 0;        ///< its own change of depth per pixel, at most kMaxSlope, 0 where unknown
     bool moved = false;   ///< belongs to an object that moved
     bool inferred = false;
 };
+
+/// What the gather wants to know of a pixel's owner beside the record: twice the change of depth
+/// towards the frame before, within ±kMaxStep, plus 1 when it moved.
+int16_t ownerHint(const Owner& owner) noexcept;
 
 /// Of this frame's samples. Ties: middle before top before bottom, middle before left before right.
 Owner seenOwner(const Job& job, int x, int y) noexcept;

@@ -1,5 +1,6 @@
 // Writes a frame's samples into the ring: the truth that record-inl.h is tested against.
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "postfx/internal/owner.h"
@@ -20,9 +21,8 @@ int surfaceOf(uint16_t id) {
 
 Owner seenOwner(const Job& job, int x, int y) noexcept {
     // Columns first, then the best of the three columns, as the SIMD kernel does it.
-    const auto better = [&](ptrdiff_t a, ptrdiff_t b) {
-        return job.now.depth[b] > job.now.depth[a] ? b : a;
-    };
+    const auto depthAt = [&](ptrdiff_t at) { return int(logDepth16(job.now.depth[at])); };
+    const auto better = [&](ptrdiff_t a, ptrdiff_t b) { return depthAt(b) > depthAt(a) ? b : a; };
     const auto column = [&](int cx) {
         const ptrdiff_t centre = y * job.stride + cx;
         ptrdiff_t best = centre;
@@ -36,17 +36,17 @@ Owner seenOwner(const Job& job, int x, int y) noexcept {
     const ptrdiff_t centre = y * job.stride + x;
     // What the centre itself shows of the owner is nearer to the pixel's own motion.
     if (surfaceOf(job.now.id[centre]) == surfaceOf(job.now.id[best]) &&
-        logDepth16(job.now.depth[best]) - logDepth16(job.now.depth[centre]) <= kDepthTolerance) {
+        depthAt(best) - depthAt(centre) <= kDepthTolerance) {
         best = centre;
     }
     Owner owner;
     owner.surface = surfaceOf(job.now.id[best]);
-    owner.depth = logDepth16(job.now.depth[best]);
+    owner.depth = depthAt(best);
     owner.expected = job.now.depth_before[best];
     owner.motion = job.now.motion[best];
     owner.normal = job.now.normal != nullptr ? compactNormal(job.now.normal[best]) : 0;
     owner.slope = surfaceOf(job.now.id[centre]) == owner.surface
-                      ? owner.depth - logDepth16(job.now.depth[centre])
+                      ? std::min(owner.depth - depthAt(centre), kMaxSlope)
                       : 0;
     owner.moved = (job.now.id[best] & kMovedBit) != 0;
     return owner;
@@ -66,10 +66,10 @@ Owner inferOwner(const Job& job, int x, int y, const Owner& seen) noexcept {
     if (!at(seen.motion, there)) {
         return seen;
     }
-    const uint32_t owner = before.owner[there];
-    const int depth = highHalf(before.depths[there]);
-    const Motion motion = unpackMotion(before.motion[there]);
-    const int surface = int(owner & kSurfaceMask);
+    const int owner = uint16_t(before.owner[there]);
+    const int depth = plusOffset(before.owner_depth[there]);
+    const Motion motion{before.motion[0][there], before.motion[1][there]};
+    const int surface = owner & int(kSurfaceMask);
     if ((owner & kInferredBit) != 0 || surface == seen.surface || motion.x_fx8 == kNoHistory ||
         depth <= seen.expected + kDepthTolerance + kSlopeFactor * seen.slope) {
         return seen;
@@ -81,18 +81,22 @@ Owner inferOwner(const Job& job, int x, int y, const Owner& seen) noexcept {
     if (!at(motion, from)) {
         return seen;
     }
-    const int from_depth = highHalf(before.depths[from]);
-    if ((before.owner[from] & 0xFFFF) != (owner & 0xFFFF) ||
-        std::abs(from_depth - depth) > kDepthTolerance) {
+    const int from_depth = plusOffset(before.owner_depth[from]);
+    if (uint16_t(before.owner[from]) != owner || std::abs(from_depth - depth) > kDepthTolerance) {
         return seen;
     }
     Owner inferred;
     inferred.surface = surface;
     inferred.depth = inferred.expected = from_depth;
-    inferred.motion = unpackMotion(before.motion[from]);
-    inferred.normal = before.owner[from] >> 16;
+    inferred.motion = {before.motion[0][from], before.motion[1][from]};
+    inferred.normal = uint16_t(before.normal[from]);
     inferred.inferred = true;
     return inferred;
+}
+
+int16_t ownerHint(const Owner& owner) noexcept {
+    const int step = std::clamp(owner.expected - owner.depth, -kMaxStep, kMaxStep);
+    return int16_t(2 * step + (owner.moved ? 1 : 0));
 }
 
 void recordTileReference(const Job& job, const TileRect& tile) noexcept {
@@ -101,12 +105,17 @@ void recordTileReference(const Job& job, const TileRect& tile) noexcept {
             const ptrdiff_t at = y * job.stride + x;
             const Owner owner = inferOwner(job, x, y, seenOwner(job, x, y));
             const SlotOut& out = job.record;
-            out.red_green[at] = packHalves(job.now.colour[0][at], job.now.colour[1][at]);
-            out.blue_id[at] = packHalves(job.now.colour[2][at], job.now.id[at]);
-            out.depths[at] = packHalves(logDepth16(job.now.depth[at]), uint32_t(owner.depth));
-            out.motion[at] = packMotion(owner.motion);
-            out.owner[at] = packHalves(
-                uint32_t(owner.surface) | (owner.inferred ? kInferredBit : 0), owner.normal);
+            for (int c = 0; c < 3; ++c) {
+                out.colour[c][at] = lessOffset(job.now.colour[c][at]);
+            }
+            out.id[at] = int16_t(job.now.id[at]);
+            out.depth[at] = lessOffset(logDepth16(job.now.depth[at]));
+            out.owner_depth[at] = lessOffset(owner.depth);
+            out.owner[at] = int16_t(owner.surface | (owner.inferred ? kInferredBit : 0));
+            out.motion[0][at] = owner.motion.x_fx8;
+            out.motion[1][at] = owner.motion.y_fx8;
+            out.normal[at] = int16_t(owner.normal);
+            job.hint[at] = ownerHint(owner);
         }
     }
 }

@@ -10,22 +10,32 @@
 namespace still::taa {
 
 /// One frame's samples. The owner of a pixel is the nearest sample of its 3×3 window. All planes
-/// share the image's stride (in elements).
-template <class U32>
+/// share the image's stride (in elements). Planes of 16-bit lanes: values of 0 … 65535 are kept
+/// less kOffset, so that they compare, saturate and multiply as signed numbers.
+template <class I16>
 struct SlotPointers {
-    U32* red_green = nullptr;  ///< fx12, red in the low half
-    U32* blue_id = nullptr;    ///< blue fx12 in the low half, id of the sample in the high
-    U32* depths = nullptr;  ///< logDepth16 of the sample in the low half, of the owner in the high
-    U32* motion = nullptr;  ///< of the owner, as in GBuffer::motion, x in the low half
-    U32* owner =
-        nullptr;  ///< low half: surface of the owner, kInferredBit; high: its compactNormal()
+    I16* colour[3] = {};         ///< fx12 − kOffset
+    I16* id = nullptr;           ///< bits of the G-buffer's id: negative where moved
+    I16* depth = nullptr;        ///< logDepth16 − kOffset of the sample …
+    I16* owner_depth = nullptr;  ///< … and of the owner
+    I16* owner = nullptr;        ///< surface of the owner, kInferredBit
+    I16* motion[2] = {};         ///< of the owner, as in GBuffer::motion: x, y
+    I16* normal = nullptr;       ///< compactNormal() of the owner; 0 when the G-buffer has none
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
 };
-using SlotOut = SlotPointers<uint32_t>;
-using SlotIn = SlotPointers<const uint32_t>;
+using SlotOut = SlotPointers<int16_t>;
+using SlotIn = SlotPointers<const int16_t>;
+
+constexpr int kOffset = 32768;
+constexpr int16_t lessOffset(int v) {
+    return int16_t(v - kOffset);
+}
+constexpr int plusOffset(int16_t v) {
+    return v + kOffset;
+}
 
 /// The owner was not seen in this frame's window but must be there: see inferOwner().
-constexpr uint32_t kInferredBit = 0x8000;
+constexpr int kInferredBit = 0x8000;
 
 /// The current frame's planes; `normal` may be null.
 struct Current {
@@ -38,8 +48,8 @@ struct Current {
 };
 
 /// Sums of the samples of pixels that stand still. mean · count + rest is the sum, and mean is the
-/// sum divided by count, rounded half up. |rest| ≤ 127 because count ≤ 255. From Job::settled samples
-/// on, the mean is what Job::shown shows, and stands there only.
+/// sum divided by count, rounded half up. |rest| ≤ 127 because count ≤ 255. From Job::settled
+/// samples on, the mean is what Job::shown shows, and stands there only.
 struct StillSums {
     uint16_t* mean[3] = {};  ///< of fewer samples
     int8_t* rest[3] = {};
@@ -51,9 +61,10 @@ struct Job {
     int width = 0, height = 0;
     ptrdiff_t stride = 0;
     Current now;
-    int frames = 1;         ///< valid slots, this frame's included: 1 … kMaxRing
-    SlotOut record;         ///< this frame's slot …
-    SlotIn slot[kMaxRing];  ///< … which is also slot[0]; slot[k] is k frames old
+    int frames = 1;           ///< valid slots, this frame's included: 1 … kMaxRing
+    SlotOut record;           ///< this frame's slot …
+    SlotIn slot[kMaxRing];    ///< … which is also slot[0]; slot[k] is k frames old
+    int16_t* hint = nullptr;  ///< of this frame's owners: see ownerHint()
     StillSums sums;
     uint16_t* shown[3] = {};         ///< the resolved image
     uint8_t* shown_count = nullptr;  ///< samples in it; gathered pixels: frames, rounded
@@ -73,21 +84,5 @@ struct Job {
 struct TileRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
-
-constexpr int lowHalf(uint32_t v) {
-    return int(v & 0xFFFF);
-}
-constexpr int highHalf(uint32_t v) {
-    return int(v >> 16);
-}
-constexpr uint32_t packHalves(uint32_t low, uint32_t high) {
-    return low | (high << 16);
-}
-constexpr Motion unpackMotion(uint32_t v) {
-    return {int16_t(v & 0xFFFF), int16_t(v >> 16)};
-}
-constexpr uint32_t packMotion(Motion m) {
-    return packHalves(uint16_t(m.x_fx8), uint16_t(m.y_fx8));
-}
 
 }  // namespace still::taa

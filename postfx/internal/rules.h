@@ -19,6 +19,14 @@ constexpr int kDepthTolerance = 48;
 constexpr int kSlopeFactor = 3;
 /// … plus an eighth of the change that is expected over the frames in between.
 constexpr int kStepShift = 3;
+/// Steps of logDepth16 per pixel are held within this, so that all that comes of them fits 16 bits:
+/// 2 octaves.
+constexpr int kMaxSlope = 4000;
+/// Steps per frame that are larger than 8 octaves count as 16.
+constexpr int kMaxStep = 16383;
+constexpr int heldStep(int step) {
+    return step >= kMaxStep ? 2 * kMaxStep : (step <= -kMaxStep ? -2 * kMaxStep : step);
+}
 
 /// A sample of another surface counts for a pixel when the two surfaces have slid over each other
 /// by at most this much since (1/256 pixel, larger axis).

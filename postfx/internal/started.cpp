@@ -67,11 +67,11 @@ void StartedSurfaces::countAges(bool first, int ring) {
     }
 }
 
-void forgetStarted(const StartedSurfaces& started, ImageView<const uint32_t> last,
+void forgetStarted(const StartedSurfaces& started, ImageView<const int16_t> last,
                    const TileRect& tile, ImageView<uint8_t> count) noexcept {
     for (int y = std::max(tile.y0 - 1, 0); y < std::min(tile.y1 + 1, last.height); ++y) {
         for (int x = std::max(tile.x0 - 1, 0); x < std::min(tile.x1 + 1, last.width); ++x) {
-            if (!started.contains(highHalf(last.at(x, y)) & int(kSurfaceMask))) {
+            if (!started.contains(last.at(x, y) & int(kSurfaceMask))) {
                 continue;
             }
             for (int j = std::max(y - 1, tile.y0); j <= std::min(y + 1, tile.y1 - 1); ++j) {

@@ -43,8 +43,8 @@ class StartedSurfaces {
 };
 
 /// Takes their sums from the tile's pixels whose 3×3 window showed a started surface in the last
-/// frame, whose blue_id plane is `last`.
-void forgetStarted(const StartedSurfaces& started, ImageView<const uint32_t> last,
+/// frame, whose ids are `last`.
+void forgetStarted(const StartedSurfaces& started, ImageView<const int16_t> last,
                    const TileRect& tile, ImageView<uint8_t> count) noexcept;
 
 }  // namespace still::taa

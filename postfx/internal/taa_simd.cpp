@@ -21,10 +21,12 @@
 #if HWY_TARGET != HWY_SCALAR
 // clang-format off
 #include "postfx/internal/taa_lanes-inl.h"
+#include "postfx/internal/half_lanes-inl.h"
 #include "postfx/internal/record-inl.h"
 #include "postfx/internal/accumulate-inl.h"
 #include "postfx/internal/gather_fetch-inl.h"
 #include "postfx/internal/gather_layers-inl.h"
+#include "postfx/internal/gather_fit-inl.h"
 #include "postfx/internal/gather-inl.h"
 // clang-format on
 #endif

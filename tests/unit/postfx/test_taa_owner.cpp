@@ -22,23 +22,25 @@ uint32_t depthBits(float depth) {
     return std::bit_cast<uint32_t>(depth);
 }
 
-/// Planes of one kept frame.
+/// Planes of one kept frame, in the order of SlotPointers, and the hints last.
 struct Slot {
-    Image<uint32_t> planes[5];
+    static constexpr int kPlanes = 11;
+    enum Plane { kOwnerDepth = 5, kOwner = 6, kMotionX = 7, kMotionY = 8, kNormal = 9 };
+    Image<int16_t> planes[kPlanes];
 
     void resize(int width, int height) {
-        for (Image<uint32_t>& plane : planes) {
+        for (Image<int16_t>& plane : planes) {
             plane.resize(width, height);
         }
     }
-    taa::SlotOut out() {
-        return {planes[0].view().data, planes[1].view().data, planes[2].view().data,
-                planes[3].view().data, planes[4].view().data};
+    template <class Pointers>
+    Pointers pointers() {
+        const auto of = [&](int plane) { return planes[plane].view().data; };
+        return {{of(0), of(1), of(2)}, of(3), of(4), of(5), of(6), {of(7), of(8)}, of(9)};
     }
-    taa::SlotIn in() {
-        const taa::SlotOut o = out();
-        return {o.red_green, o.blue_id, o.depths, o.motion, o.owner};
-    }
+    taa::SlotOut out() { return pointers<taa::SlotOut>(); }
+    taa::SlotIn in() { return pointers<taa::SlotIn>(); }
+    int16_t* hints() { return planes[kPlanes - 1].view().data; }
 };
 
 void pointAt(const GBuffer& gbuffer, Job& job) {
@@ -88,9 +90,11 @@ struct Scene {
         gbuffer.motion.at(x, y) = motion;
     }
     void setBefore(int x, int y, int owner, uint16_t depth) {
-        before.planes[2].at(x, y) = taa::packHalves(depth, depth);
-        before.planes[3].at(x, y) = taa::packMotion(motion);
-        before.planes[4].at(x, y) = taa::packHalves(uint32_t(owner), 77);
+        before.planes[Slot::kOwnerDepth].at(x, y) = taa::lessOffset(depth);
+        before.planes[Slot::kMotionX].at(x, y) = motion.x_fx8;
+        before.planes[Slot::kMotionY].at(x, y) = motion.y_fx8;
+        before.planes[Slot::kOwner].at(x, y) = int16_t(owner);
+        before.planes[Slot::kNormal].at(x, y) = 77;
     }
     Owner ownerOf(int x, int y) const {
         return taa::inferOwner(job, x, y, taa::seenOwner(job, x, y));
@@ -137,7 +141,8 @@ TEST_CASE("taa owner: nothing is inferred twice, from behind, from outside or wi
           "[postfx][unit]") {
     Scene twice;
     for (int y = 0; y < kSize; ++y) {
-        twice.before.planes[4].at(5, y) |= taa::kInferredBit;
+        int16_t& owner = twice.before.planes[Slot::kOwner].at(5, y);
+        owner = int16_t(owner | taa::kInferredBit);
     }
     CHECK_FALSE(twice.ownerOf(5, 5).inferred);
     CHECK(twice.ownerOf(4, 5).inferred);
@@ -163,7 +168,7 @@ TEST_CASE("taa owner: nothing is inferred twice, from behind, from outside or wi
 TEST_CASE("taa owner: a wire that goes elsewhere, or is seen, is not inferred", "[postfx][unit]") {
     Scene away;
     for (int y = 0; y < kSize; ++y) {
-        away.before.planes[3].at(5, y) = taa::packMotion({1024, 0});  // came from the right
+        away.before.planes[Slot::kMotionX].at(5, y) = 1024;  // came from the right
     }
     CHECK_FALSE(away.ownerOf(5, 5).inferred);
     Scene seen;
@@ -189,6 +194,7 @@ TEST_CASE("taa owner: every SIMD target records what the scalar twin records", "
             Slot wanted;
             wanted.resize(width, height);
             job.record = wanted.out();
+            job.hint = wanted.hints();
             job.slot[0] = wanted.in();
             job.slot[1] = before.in();
             const taa::TileRect all{0, 0, std::min(width, kTileSize), height};
@@ -197,10 +203,11 @@ TEST_CASE("taa owner: every SIMD target records what the scalar twin records", "
                 Slot got;
                 got.resize(width, height);
                 job.record = got.out();
+                job.hint = got.hints();
                 job.slot[0] = got.in();
                 taa::tileKernels(target).record(job, all);
                 int wrong = 0;
-                for (int p = 0; p < 5; ++p) {
+                for (int p = 0; p < Slot::kPlanes; ++p) {
                     for (int y = all.y0; y < all.y1; ++y) {
                         for (int x = all.x0; x < all.x1; ++x) {
                             wrong += got.planes[p].at(x, y) == wanted.planes[p].at(x, y) ? 0 : 1;
