@@ -284,11 +284,28 @@ HWY_INLINE void prefetchStop(const Job& job, const SlotIn& slot, const PlaceLane
     }
 }
 
+/// Asks for what the windows of two rows on will read.
+HWY_INLINE void prefetchWindows(const Job& job, const TileRect& tile, int y) {
+    const SlotIn& now = job.slot[0];
+    const int last = job.height - 1;
+    const ptrdiff_t below = std::min(y + kRowsAhead + 1, last) * job.stride + tile.x0;
+    const ptrdiff_t here = std::min(y + kRowsAhead, last) * job.stride + tile.x0;
+    const int width = tile.x1 - tile.x0;
+    for (const int16_t* plane : {now.colour[0], now.colour[1], now.colour[2], now.id, now.depth}) {
+        prefetchRow(plane + below, width + 1);
+    }
+    for (const int16_t* plane : {now.owner, now.owner_depth, now.motion[0], now.motion[1],
+                                 now.normal, static_cast<const int16_t*>(job.hint)}) {
+        prefetchRow(plane + here, width);
+    }
+}
+
 /// Windows and ways of a row.
 HWY_INLINE void lookAlong(const Job& job, const TileRect& tile, int y, bool sums_valid,
                           GroupRow& row) {
     const hn::Rebind<uint8_t, DS> d8;
     const int count = (tile.x1 - tile.x0 + kHalves - 1) / kHalves;
+    prefetchWindows(job, tile, y);
     for (int i = 0; i < count; ++i) {
         const int x = tile.x0 + i * kHalves;
         Group& group = row.groups[i];
@@ -317,7 +334,7 @@ HWY_INLINE void lookAlong(const Job& job, const TileRect& tile, int y, bool sums
     }
     for (int i = 0; i < count; ++i) {
         const Way& way = row.groups[i].way;
-        for (int k = 0; k < way.frames; ++k) {
+        for (int k = 1; k < way.frames; ++k) {
             prefetchStop(job, job.slot[k], way.stop[k].place, i + 1 == count);
         }
     }
