@@ -126,6 +126,7 @@ struct FrameLoop::State {
     void filterSample();
     void renderAlone(int frame);
     ColourPlanes colour() const;
+    void encode();
     FrameResult result() const;
 };
 
@@ -406,6 +407,14 @@ ColourPlanes FrameLoop::State::colour() const {
     return temporal() ? resolved() : planesOf(gbuffer);
 }
 
+/// The whole picture, or of the gather's, unless it was sharpened, what changed.
+void FrameLoop::State::encode() {
+    const bool by_tile = temporal() && gathers() && !sharpens();
+    encodeOutput(colour(), table, output.view(), workers,
+                 by_tile ? taa.changedTiles() : std::span<const uint8_t>());
+    taa.forgetChanges();
+}
+
 FrameResult FrameLoop::State::result() const {
     FrameResult result;
     result.output = output.view();
@@ -448,9 +457,7 @@ FrameResult FrameLoop::render(int frame) {
     }
     if (!state.shown) {
         state.output.resize(state.settings.width, state.settings.height);
-        state.timed(state.times.output_ms, [&] {
-            encodeOutput(state.colour(), state.table, state.output.view(), state.workers);
-        });
+        state.timed(state.times.output_ms, [&] { state.encode(); });
     }
     state.shown = state.temporal();
     return state.result();

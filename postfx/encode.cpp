@@ -4,6 +4,7 @@
 
 #include "postfx/encode.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "rasterizer/fixed.h"
@@ -54,16 +55,29 @@ OutputTable::OutputTable(ToneMap tone_map) {
 }
 
 void encodeOutput(const ColourPlanes& colour, const OutputTable& table, ImageView<Rgb8> out,
-                  Workers& workers) {
+                  Workers& workers, std::span<const uint8_t> changed) {
     assert(out.width == colour.red.width && out.height == colour.red.height);
+    const int tiles_x = (out.width + kTileSize - 1) / kTileSize;
+    const auto encode = [&](int y, int x0, int x1) {
+        const uint16_t* red = colour.red.row(y);
+        const uint16_t* green = colour.green.row(y);
+        const uint16_t* blue = colour.blue.row(y);
+        Rgb8* row = out.row(y);
+        for (int x = x0; x < x1; ++x) {
+            row[x] = {table[red[x]], table[green[x]], table[blue[x]]};
+        }
+    };
     workers.parallelFor(out.height, kGrainRows, [&](int begin, int end, int) {
         for (int y = begin; y < end; ++y) {
-            const uint16_t* red = colour.red.row(y);
-            const uint16_t* green = colour.green.row(y);
-            const uint16_t* blue = colour.blue.row(y);
-            Rgb8* row = out.row(y);
-            for (int x = 0; x < out.width; ++x) {
-                row[x] = {table[red[x]], table[green[x]], table[blue[x]]};
+            if (changed.empty()) {
+                encode(y, 0, out.width);
+                continue;
+            }
+            const uint8_t* tiles = changed.data() + y / kTileSize * tiles_x;
+            for (int tile = 0; tile < tiles_x; ++tile) {
+                if (tiles[tile] != 0) {
+                    encode(y, tile * kTileSize, std::min((tile + 1) * kTileSize, out.width));
+                }
             }
         }
     });

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "postfx/taa.h"
 
@@ -24,8 +25,9 @@ class OutputTable {
     std::array<uint8_t, 65536> table_;
 };
 
-/// Writes width × height pixels. Views have equal sizes.
+/// Writes width × height pixels, or those of the tiles that `changed` (not 0; empty: all). Views
+/// have equal sizes.
 void encodeOutput(const ColourPlanes& colour, const OutputTable& table, ImageView<Rgb8> out,
-                  Workers& workers);
+                  Workers& workers, std::span<const uint8_t> changed = {});
 
 }  // namespace still

@@ -20,12 +20,15 @@ namespace {
 using taa::Job;
 using taa::SlotOut;
 using taa::Stillness;
+using taa::TileJitter;
 using taa::TileRect;
 
 struct SlotPlanes {
     enum Plane { red, green, blue, id, depth, owner_depth, owner, motion_x, motion_y, normal };
     std::array<Image<int16_t>, normal + 1> planes;
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
+    std::vector<TileJitter> tile_jitter;
+    bool apart = false;  ///< some tiles' samples lie otherwise: they rested
 
     void resize(int width, int height) {
         for (Image<int16_t>& plane : planes) {
@@ -44,7 +47,8 @@ struct SlotPlanes {
                 .motion = {of(motion_x), of(motion_y)},
                 .normal = of(normal),
                 .jitter_x_fx8 = jitter_x_fx8,
-                .jitter_y_fx8 = jitter_y_fx8};
+                .jitter_y_fx8 = jitter_y_fx8,
+                .tile_jitter = apart ? tile_jitter.data() : nullptr};
     }
 };
 
@@ -85,6 +89,7 @@ struct Taa::State {
     int sample_cap = 0;
     std::vector<TileMemory> tiles;
     std::vector<uint8_t> wanted;       ///< plan()
+    std::vector<uint8_t> changed;      ///< changedTiles()
     std::vector<uint32_t> change_age;  ///< empty until something changes
     std::vector<uint32_t> turning;     ///< Job::turning; empty: null
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
@@ -97,6 +102,10 @@ struct Taa::State {
         return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
     }
 
+    size_t tileCount() const {
+        return size_t(tiles_x) * size_t((height + kTileSize - 1) / kTileSize);
+    }
+
     void begin(int new_width, int new_height, bool reset, const TaaSettings& settings);
     void noteChanges(const TaaFrame& frame, bool now);
     bool planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats);
@@ -106,6 +115,7 @@ struct Taa::State {
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
                    Workers& workers);
     void forgetStarted(Workers& workers);
+    void noteJitter(SlotPlanes& slot) const;
     void advanceRing(const TaaFrame& frame, bool shading_changed, Workers& workers);
     void keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile);
 };
@@ -127,6 +137,7 @@ void Taa::State::begin(int new_width, int new_height, bool reset, const TaaSetti
         ring.resize(size_t(settings.ring));
         for (SlotPlanes& slot : ring) {
             slot.resize(width, height);
+            slot.tile_jitter.assign(tileCount(), {});
         }
         hint.resize(width, height);
         for (size_t c = 0; c < 3; ++c) {
@@ -140,7 +151,7 @@ void Taa::State::begin(int new_width, int new_height, bool reset, const TaaSetti
     // Complete sums may have too much, and settled ones may not be so any more.
     if (first || settings.sample_cap < sample_cap ||
         std::min(taa::kSettled, settings.sample_cap) != std::min(taa::kSettled, sample_cap)) {
-        tiles.assign(size_t(tiles_x) * size_t((height + kTileSize - 1) / kTileSize), TileMemory{});
+        tiles.assign(tileCount(), TileMemory{});
     }
 }
 
@@ -179,10 +190,8 @@ bool Taa::State::planTiles(std::span<const TileFacts> facts, bool shading_change
         tile.quiet = tile.tested ? 0 : tile.quiet;
         tile.keeps =
             first || facts[i].camera_moved || !tile.settled || tile.quiet < int(ring.size());
-        any |= tile.keeps && (!overwritten || tile.tested || facts[i].camera_moved);
-    }
-    for (TileMemory& tile : tiles) {
-        tile.keeps = any;  // all samples of a slot lie alike
+        tile.keeps &= !overwritten || tile.tested || facts[i].camera_moved;
+        any |= tile.keeps;
     }
     return any;
 }
@@ -214,6 +223,7 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     Job job;
     job.width = width;
     job.height = height;
+    job.tiles_x = tiles_x;
     job.stride = gbuffer.red.view().stride;
     job.now.colour[0] = gbuffer.red.view().data;
     job.now.colour[1] = gbuffer.green.view().data;
@@ -270,8 +280,22 @@ void Taa::State::advanceRing(const TaaFrame& frame, bool shading_changed, Worker
     started.countAges(first, slots);
     cursor = (cursor + 1) % slots;
     frames = std::min(frames + 1, slots);
-    ring[size_t(cursor)].jitter_x_fx8 = frame.jitter_x_fx8;
-    ring[size_t(cursor)].jitter_y_fx8 = frame.jitter_y_fx8;
+    SlotPlanes& slot = ring[size_t(cursor)];
+    slot.jitter_x_fx8 = frame.jitter_x_fx8;
+    slot.jitter_y_fx8 = frame.jitter_y_fx8;
+    noteJitter(slot);
+}
+
+/// Of the tiles that are kept; the others' samples lie where they lay.
+void Taa::State::noteJitter(SlotPlanes& slot) const {
+    const TileJitter now{int16_t(slot.jitter_x_fx8), int16_t(slot.jitter_y_fx8)};
+    slot.apart = false;
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        if (tiles[i].keeps) {
+            slot.tile_jitter[i] = now;
+        }
+        slot.apart |= !slot.tile_jitter[i].sameAs(now);
+    }
 }
 
 void Taa::State::keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile) {
@@ -362,6 +386,10 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
             s.keepAndSum(job, kernels, tile);
         }
     });
+    s.changed.resize(s.tiles.size());
+    for (size_t i = 0; i < s.tiles.size(); ++i) {
+        s.changed[i] |= s.tiles[i].changed ? 1 : 0;
+    }
     s.sample_cap = settings.sample_cap;
     s.first = false;
     if (!frame.looked_at) {
@@ -378,6 +406,14 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
             }
         }
     });
+}
+
+std::span<const uint8_t> Taa::changedTiles() const {
+    return state_->changed;
+}
+
+void Taa::forgetChanges() {
+    std::fill(state_->changed.begin(), state_->changed.end(), uint8_t{0});
 }
 
 ColourPlanes Taa::colour() const {

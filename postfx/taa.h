@@ -68,6 +68,10 @@ class Taa {
     /// needs no G-buffer. False does nothing.
     bool rest(const TaaSettings& settings);
 
+    /// Tiles (1; else 0) whose image was changed by any resolve() since the last forgetChanges().
+    std::span<const uint8_t> changedTiles() const;
+    void forgetChanges();
+
     /// The resolved image; valid until the next resolve().
     ColourPlanes colour() const;
     /// Number of samples in each pixel, 1 … sample_cap; valid until the next resolve().

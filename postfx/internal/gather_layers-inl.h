@@ -115,11 +115,13 @@ HWY_NOINLINE void stepWay(const Job& job, int k, bool last, const LayerLanes& la
     if (last) {
         return;
     }
-    const auto nearest = [](VS whole, VS part, int jitter) {
-        return hn::Add(whole, hn::ShiftRight<8>(hn::Add(part, set(128 - jitter))));
+    const auto nearest = [](VS whole, VS part, VS jitter) {
+        return hn::Add(whole, hn::ShiftRight<8>(hn::Add(part, hn::Sub(set(128), jitter))));
     };
-    const VS column = nearest(walker.place.column, walker.place.x_fx8, slot.jitter_x_fx8);
-    const VS row = nearest(walker.place.row, walker.place.y_fx8, slot.jitter_y_fx8);
+    const PlaceLanes& place = walker.place;
+    const JitterLanes jitter = jitterAt(job, slot, place.column, place.row, walker.alive);
+    const VS column = nearest(place.column, place.x_fx8, jitter.x_fx8);
+    const VS row = nearest(place.row, place.y_fx8, jitter.y_fx8);
     const VS out = hn::Or(beyond(column, job.width - 1), beyond(row, job.height - 1));
     walker.alive = hn::And(walker.alive, hn::Eq(out, zero()));
     if (k == 0 || !any(walker.alive)) {

@@ -183,13 +183,19 @@ void follow(const Job& job, int x, int y, const Layer& layer, int frames, Visit&
             px += motion.x_fx8;
             py += motion.y_fx8;
         }
-        const int sx = px - slot.jitter_x_fx8, sy = py - slot.jitter_y_fx8;
+        const bool apart = slot.tile_jitter != nullptr;
+        const TileJitter jitter =
+            apart ? jitterOf(job, slot, px >> 8, py >> 8)
+                  : TileJitter{int16_t(slot.jitter_x_fx8), int16_t(slot.jitter_y_fx8)};
+        const int sx = px - jitter.x_fx8, sy = py - jitter.y_fx8;
         const int ix = sx >> 8, iy = sy >> 8, fx = sx & 255, fy = sy & 255;
         const int wx = axisWeight(fx), wy = axisWeight(fy);
         for (int tap = 0; tap < 4; ++tap) {
             const int i = tap & 1, j = tap >> 1;
             const int weight = (i != 0 ? wx : kAxisWeight - wx) * (j != 0 ? wy : kAxisWeight - wy);
-            if (weight != 0 && inside(job, ix + i, iy + j)) {
+            const bool seen = inside(job, ix + i, iy + j) &&
+                              (!apart || jitter.sameAs(jitterOf(job, slot, ix + i, iy + j)));
+            if (weight != 0 && seen) {
                 visit(k, slot, (iy + j) * job.stride + ix + i, weight,
                       still::taa::placeOf(i * 256 - fx), still::taa::placeOf(j * 256 - fy), motion);
             }

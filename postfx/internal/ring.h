@@ -1,6 +1,7 @@
 #pragma once
 // The last raw frames, and what a kernel sees of them.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -8,6 +9,13 @@
 #include "rasterizer/gbuffer.h"
 
 namespace still::taa {
+
+/// Where the samples of one of a slot's tiles lie. A tile that rests keeps those of an older frame.
+struct TileJitter {
+    int16_t x_fx8 = 0, y_fx8 = 0;
+
+    bool sameAs(const TileJitter& o) const { return x_fx8 == o.x_fx8 && y_fx8 == o.y_fx8; }
+};
 
 /// One frame's samples. The owner of a pixel is the nearest sample of its 3×3 window. All planes
 /// share the image's stride (in elements). Planes of 16-bit lanes: values of 0 … 65535 are kept
@@ -22,6 +30,7 @@ struct SlotPointers {
     I16* motion[2] = {};         ///< of the owner, as in GBuffer::motion: x, y
     I16* normal = nullptr;       ///< compactNormal() of the owner; 0 when the G-buffer has none
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
+    const TileJitter* tile_jitter = nullptr;  ///< of each tile, row by row; null: all lie as above
 };
 using SlotOut = SlotPointers<int16_t>;
 using SlotIn = SlotPointers<const int16_t>;
@@ -59,6 +68,7 @@ struct StillSums {
 /// Everything a kernel needs for any tile of a frame.
 struct Job {
     int width = 0, height = 0;
+    int tiles_x = 0;
     ptrdiff_t stride = 0;
     Current now;
     int frames = 1;           ///< valid slots, this frame's included: 1 … kMaxRing
@@ -84,5 +94,12 @@ struct Job {
 struct TileRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
+
+/// The tile of a slot with `tile_jitter` that holds a pixel, or the nearest pixel of the picture.
+inline const TileJitter& jitterOf(const Job& job, const SlotIn& slot, int column, int row) {
+    const int x = std::clamp(column, 0, job.width - 1) / kTileSize;
+    const int y = std::clamp(row, 0, job.height - 1) / kTileSize;
+    return slot.tile_jitter[y * job.tiles_x + x];
+}
 
 }  // namespace still::taa

@@ -112,6 +112,25 @@ TEST_CASE("frame_loop: only tiles in which something is new are drawn, and nobod
     CHECK(lazy.counters().tiles == 0);
 }
 
+TEST_CASE("frame_loop: a late start finds the tiles at rest that a full run has there",
+          "[unit][frame_loop]") {
+    Scene scene = boxOnFloor(50, 110);
+    scene.camera.eye.keys = {{100, {1, 3, 5}}, {130, {2, 3, 5}}};
+    Workers workers(1, Schedule::serial);
+    FrameLoop full(scene, settingsOf(400, 280), workers);
+    int frames_in_parts = 0;
+    for (int frame = 0; frame < 112; ++frame) {
+        const uint64_t expected = hashPlane(full.render(frame).output);
+        frames_in_parts += full.counters().tiles < 7 * 5 ? 1 : 0;
+        if (frame == 90 || frame == 101 || frame == 104 || frame == 111) {
+            FrameLoop late(scene, settingsOf(400, 280), workers);
+            INFO("frame " << frame);
+            CHECK(hashPlane(late.render(frame).output) == expected);
+        }
+    }
+    CHECK(frames_in_parts > 20);
+}
+
 TEST_CASE("frame_loop: frames that nobody looks at leave no trace", "[unit][frame_loop]") {
     // Replayed frames and sub-frames are not looked at.
     const Scene scene = boxOnFloor(4, 12);
