@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "engine/det_math.h"
+#include "rasterizer/texture_layout.h"
 
 namespace still {
 
@@ -146,7 +147,8 @@ Plane<N> shrink(uint32_t width, uint32_t height, const Fetch& fetch) {
     return out;
 }
 
-/// Sizes and offsets of the whole chain.
+/// Sizes of the whole chain, and offsets while the texture is made: without borders, until
+/// layOut().
 std::vector<TextureLevel> levelsOf(uint32_t width, uint32_t height) {
     std::vector<TextureLevel> levels;
     uint32_t offset = 0;
@@ -159,10 +161,6 @@ std::vector<TextureLevel> levelsOf(uint32_t width, uint32_t height) {
         width = std::max(width / 2, 1u);
         height = std::max(height / 2, 1u);
     }
-}
-
-size_t texelCount(const std::vector<TextureLevel>& levels) {
-    return size_t(levels.back().offset) + 1;
 }
 
 uint32_t pack(uint32_t r, uint32_t g, uint32_t b) {
@@ -197,7 +195,7 @@ Texture emptyTexture(ImageView<const Rgba8> image, Wrap wrap) {
     Texture texture;
     texture.wrap = wrap;
     texture.levels = levelsOf(uint32_t(image.width), uint32_t(image.height));
-    texture.texels.resize(texelCount(texture.levels));
+    texture.texels.resize(size_t{texture.levels.back().offset} + 1);
     return texture;
 }
 
@@ -222,6 +220,7 @@ Texture makeFromBytes(ImageView<const Rgba8> image, Wrap wrap, const ByteTable& 
         return std::array<double, 3>{decode[p.r], decode[p.g], decode[p.b]};
     };
     addMips(texture, fetch, encode);
+    layOut(texture);
     return texture;
 }
 
@@ -343,6 +342,7 @@ Texture makeNormalTextureFromHeight(ImageView<const Rgba8> image, Wrap wrap, flo
         *out++ = pack(encodeUnit(n[0]), encodeUnit(n[1]), encodeUnit(n[2]));
     }
     addMips(texture, normals, encodeUnit);
+    layOut(texture);
     return texture;
 }
 
@@ -363,11 +363,10 @@ AlphaTexture makeHeightTexture(ImageView<const Rgba8> image, Wrap wrap) {
 
 AlphaTexture makeAlphaTexture(ImageView<const Rgba8> image, Wrap wrap, bool preserve_coverage) {
     assert(!image.empty());
-    constexpr size_t kSpareBytes = 4;
     AlphaTexture texture;
     texture.wrap = wrap;
     texture.levels = levelsOf(uint32_t(image.width), uint32_t(image.height));
-    texture.texels.resize(texelCount(texture.levels) + kSpareBytes);
+    texture.texels.resize(size_t{texture.levels.back().offset} + 1);
     const size_t count = size_t(image.width) * size_t(image.height);
     size_t covered = 0;
     uint8_t* out = texture.texels.data();
@@ -406,8 +405,7 @@ AlphaTexture makeAlphaTexture(ImageView<const Rgba8> image, Wrap wrap, bool pres
         std::copy(bytes.begin(), bytes.end(), texture.texels.begin() + level.offset);
     });
     texture.levels.resize(kept);
-    const TextureLevel& last = texture.levels.back();
-    texture.texels.resize(size_t{last.offset} + size_t{last.width} * last.height + kSpareBytes);
+    layOut(texture);
     return texture;
 }
 

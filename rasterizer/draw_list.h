@@ -50,6 +50,8 @@ enum class Wrap : uint8_t { repeat, clamp };
 struct TextureLevel {
     uint32_t width = 0, height = 0;
     uint32_t offset = 0;  ///< of the level's first texel in Texture::texels
+    uint32_t stride = 0;  ///< from row to row: width + 2, see texture_layout.h
+    friend bool operator==(const TextureLevel&, const TextureLevel&) = default;
 };
 
 /// Three 10-bit channels in a word (r in bits 0–9, g 10–19, b 20–29), row 0 at the top.
@@ -57,15 +59,14 @@ struct TextureLevel {
 /// and decodes with one multiplication. Normal map: component = c · 2/1023 − 1.
 /// Level 0 is the image; each further level halves both sizes (floor, at least 1). A chain ends at
 /// 1×1 or earlier: where coarser levels would be wrong, the last one is used for all distances
-/// beyond.
+/// beyond. Levels have borders: made by texture_layout.h.
 struct Texture {
     Wrap wrap = Wrap::repeat;
     std::vector<TextureLevel> levels;
     std::vector<uint32_t> texels;
 };
 
-/// One byte per texel, 255 = opaque (or, in height maps, highest). `texels` carries 4 spare bytes
-/// at its end, so that a kernel may load 32 bits at any texel.
+/// One byte per texel, 255 = opaque (or, in height maps, highest), laid out like Texture.
 struct AlphaTexture {
     Wrap wrap = Wrap::repeat;
     std::vector<TextureLevel> levels;

@@ -127,11 +127,7 @@ AlphaTexture ditherTexture() {
             image.at(x, y) = {255, 255, 255, uint8_t(opaque ? 255 : 0)};
         }
     }
-    AlphaTexture texture = makeAlphaTexture(image.view(), Wrap::repeat, true);
-    constexpr size_t kSpareBytes = 4;
-    texture.levels.resize(1);
-    texture.texels.resize(size_t{kSize} * kSize + kSpareBytes);
-    return texture;
+    return withoutMips(makeAlphaTexture(image.view(), Wrap::repeat, true));
 }
 
 Scene dither(const char* name) {

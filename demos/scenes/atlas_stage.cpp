@@ -87,10 +87,4 @@ void addBoxes(Scene& scene, double half, int count, uint32_t seed) {
     addObject(scene, "boxes", out.take());
 }
 
-Texture withoutMips(Texture texture) {
-    texture.levels.resize(1);
-    texture.texels.resize(size_t{texture.levels[0].width} * texture.levels[0].height);
-    return texture;
-}
-
 }  // namespace still::scenes::atlas

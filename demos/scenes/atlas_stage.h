@@ -9,6 +9,7 @@
 
 #include "demos/scenes/scene_builder.h"
 #include "engine/scene.h"
+#include "rasterizer/texture_layout.h"
 
 namespace still::scenes::atlas {
 
@@ -56,9 +57,5 @@ void addWall(Scene& scene, double z, const dvec2& half, uint32_t seed);
 /// Checkered boxes of all sizes, standing and hanging, between x = −half and half, at depths from
 /// −2.5 to 1.
 void addBoxes(Scene& scene, double half, int count, uint32_t seed);
-
-/// Only the first level is left: the texture is point-sampled however far away it is, which is what
-/// real content does where its mips are missing or biased.
-Texture withoutMips(Texture texture);
 
 }  // namespace still::scenes::atlas

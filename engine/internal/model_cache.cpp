@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<char, 8> kMagic{'S', 'T', 'I', 'L', 'L', 'O', 'B', 'J'};
-constexpr uint32_t kFormat = 1;
+constexpr uint32_t kFormat = 2;
 constexpr uint32_t kByteOrder = 0x01020304;
 constexpr const char* kExtension = ".model";
 constexpr const char* kUnfinished = ".unfinished";

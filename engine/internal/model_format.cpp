@@ -9,6 +9,7 @@
 #include "engine/hash.h"
 #include "engine/internal/image_load.h"
 #include "engine/internal/obj_text.h"
+#include "rasterizer/texture_layout.h"
 
 namespace still {
 namespace {
@@ -54,8 +55,8 @@ void describe(Io& io, AnyTexture& texture, const Check& check) {
     auto& [wrap, levels, texels] = texture;
     io.values(wrap);
     io.list(levels, [&](TextureLevel& level) {
-        auto& [width, height, offset] = level;
-        io.values(width, height, offset);
+        auto& [width, height, offset, stride] = level;
+        io.values(width, height, offset, stride);
     });
     io.array(texels, check);
 }
@@ -224,23 +225,26 @@ bool isSound(const Mesh& mesh, std::span<const Material> materials) {
 }
 
 template <class AnyTexture>
-bool isSoundTexture(const AnyTexture& texture, size_t spare) {
+bool isSoundTexture(const AnyTexture& texture) {
     if (texture.levels.empty() || texture.wrap > Wrap::clamp) {
         return false;
     }
+    std::vector<TextureLevel> laid_out;
     for (size_t k = 0; k < texture.levels.size(); ++k) {
         const TextureLevel& level = texture.levels[k];
         const TextureLevel& above = texture.levels[k == 0 ? 0 : k - 1];
         const bool halved = level.width == std::max(above.width / 2, 1u) &&
                             level.height == std::max(above.height / 2, 1u);
         if (level.width < 1 || level.height < 1 || level.width > uint32_t(kMaxImageSize) ||
-            level.height > uint32_t(kMaxImageSize) || (k > 0 && !halved) ||
-            uint64_t{level.offset} + uint64_t{level.width} * level.height + spare >
-                texture.texels.size()) {
+            level.height > uint32_t(kMaxImageSize) || (k > 0 && !halved)) {
+            return false;
+        }
+        addLevel(laid_out, level.width, level.height);
+        if (level.offset != laid_out[k].offset || level.stride != laid_out[k].stride) {
             return false;
         }
     }
-    return true;
+    return texture.texels.size() == texelCount(laid_out);
 }
 
 bool isSound(const Material& m, size_t textures, size_t alpha_textures) {
@@ -285,16 +289,15 @@ std::vector<ModelFill> unflatten(std::string_view table, std::span<const ArrayIn
 }
 
 bool isSound(const ObjModel& model) {
-    constexpr size_t kSpareTexels = 0, kSpareAlphaBytes = 4;
     const size_t textures = model.textures.size(), alphas = model.alpha_textures.size();
     return isSound(model.mesh, model.materials) &&
            model.material_names.size() == model.materials.size() &&
            std::all_of(model.materials.begin(), model.materials.end(),
                        [&](const Material& m) { return isSound(m, textures, alphas); }) &&
            std::all_of(model.textures.begin(), model.textures.end(),
-                       [&](const Texture& t) { return isSoundTexture(t, kSpareTexels); }) &&
+                       [&](const Texture& t) { return isSoundTexture(t); }) &&
            std::all_of(model.alpha_textures.begin(), model.alpha_textures.end(),
-                       [&](const AlphaTexture& t) { return isSoundTexture(t, kSpareAlphaBytes); });
+                       [&](const AlphaTexture& t) { return isSoundTexture(t); });
 }
 
 }  // namespace still

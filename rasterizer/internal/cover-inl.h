@@ -7,6 +7,23 @@ namespace still::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Lanes of samples, at most a row of a block.
+using FTag = hn::CappedTag<float, kBlockSize>;
+using ITag = hn::RebindToSigned<FTag>;
+using UTag = hn::RebindToUnsigned<FTag>;
+using FVec = hn::Vec<FTag>;
+using IVec = hn::Vec<ITag>;
+using UVec = hn::Vec<UTag>;
+using FMask = hn::Mask<FTag>;
+
+HWY_INLINE FVec splat(float v) {
+    return hn::Set(FTag(), v);
+}
+
+HWY_INLINE IVec splatInt(int32_t v) {
+    return hn::Set(ITag(), v);
+}
+
 #if HWY_TARGET != HWY_SCALAR  // which has no blocks of lanes
 
 using BTag = hn::CappedTag<int32_t, kTileSlack>;  ///< a batch

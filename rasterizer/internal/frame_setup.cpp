@@ -31,6 +31,8 @@ Surface makeSurface(const DrawList& list, const Instance& instance, uint32_t ins
         s.normal = &list.textures[size_t(material.normal_texture)];
         s.features |= kShadeNormalMap;
     }
+    s.normal_like_colour = s.colour != nullptr && s.normal != nullptr &&
+                           s.colour->wrap == s.normal->wrap && s.colour->levels == s.normal->levels;
     if (material.height_texture != kNoTexture && s.tangents != nullptr) {
         s.height = &list.alpha_textures[size_t(material.height_texture)];
         s.features |= kShadeHeightMap;

@@ -14,18 +14,36 @@ namespace still::internal {
 
 // ---- triangles -------------------------------------------------------------------------------
 
-/// What shading needs of a triangle that is visible in a tile: b_k / w as planes over the tile,
-/// evaluated from an anchor pixel near the triangle so that slivers keep their precision. Kernels
-/// gather its 16 words, so the layout is fixed.
+/// What shading needs of a triangle that is visible in a tile, in one place: b_k / w as planes over
+/// the tile, evaluated from an anchor pixel near the triangle so that slivers keep their precision,
+/// and the attributes of its three corners. Kernels load it in quads of four words (see
+/// LaneTriangles), so the layout is fixed.
 struct alignas(64) ShadeTriangle {
-    float p[3], p_dx[3], p_dy[3];
-    float anchor_x, anchor_y;  ///< tile-local pixel
-    int32_t vertex[3];
-    int32_t surface;
+    float p[3];
+    float anchor_x;  ///< tile-local pixel
+    float p_dx[3];
+    float anchor_y;
+    float p_dy[3];
     float flip;  ///< −1 when the shading normal points away from the eye
+    // Texture coordinates, and what their slopes take from the triangle: Σ p_dx_k, Σ p_dy_k,
+    // Σ p_dx_k · u_k, …
+    float u[3], sum_dx;
+    float v[3], sum_dy;
+    float u_dx, u_dy, v_dx, v_dy;
+    float nx[3];
+    float handedness;  ///< of the tangent at corner 0
+    float ny[3];
+    int32_t surface;
+    float nz[3];
+    float unused[1];
+    // Only for surfaces with highlights, under point lights, or in motion.
+    float x[3], unused_x, y[3], unused_y, z[3], unused_z;
+    // Only for surfaces with normal or height maps.
+    float tx[3], unused_tx, ty[3], unused_ty, tz[3], unused_tz;
+    int32_t vertex[3];
+    int32_t unused_vertex;
 };
-static_assert(sizeof(ShadeTriangle) == 64);
-constexpr int kShadeWords = 16;
+static_assert(sizeof(ShadeTriangle) == 256);
 
 // ---- frame-wide tables -----------------------------------------------------------------------
 
@@ -51,6 +69,7 @@ struct Surface {
     const Texture* normal = nullptr;
     const AlphaTexture* alpha = nullptr;
     const AlphaTexture* height = nullptr;
+    bool normal_like_colour = false;  ///< the two textures have the same levels and wrap alike
     uint32_t instance = 0;
     uint8_t features = 0;
     int shininess = 0;  ///< 0 = no highlight
@@ -100,7 +119,8 @@ struct TileRun {
 struct TilePlanes {
     uint16_t *red, *green, *blue, *id, *depth_before;
     uint32_t *depth, *normal;
-    Motion* motion;  ///< null: the plane is not wanted or stays zero
+    /// Null: the plane is not wanted, or stays zero and depth_before is that of the depth itself.
+    Motion* motion;
     ptrdiff_t stride;
 };
 

@@ -11,6 +11,8 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <cstddef>
+#include <cstring>
 
 #include "rasterizer/fixed.h"
 #include "rasterizer/internal/dispatch.h"
@@ -25,6 +27,7 @@
 #include "rasterizer/internal/surface-inl.h"
 #include "rasterizer/internal/sampler-inl.h"
 #include "rasterizer/internal/parallax-inl.h"
+#include "rasterizer/internal/alpha-inl.h"
 #include "rasterizer/internal/shade-inl.h"
 #include "rasterizer/internal/cover-inl.h"
 #include "rasterizer/internal/visibility-inl.h"
@@ -36,7 +39,7 @@ namespace still::internal {
 namespace HWY_NAMESPACE {
 
 const RasterKernels* kernelTable() {
-    static constexpr RasterKernels kKernels{rasterizeTile, prepareShading, shadeTile};
+    static constexpr RasterKernels kKernels{rasterizeTile, prepareShading, shading::shadeTile};
     return &kKernels;
 }
 

@@ -5,6 +5,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
 namespace HWY_NAMESPACE {
+namespace shading {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Change of the texture coordinates along the ray from depth 0 to depth 1.
@@ -16,12 +17,11 @@ template <bool kUniform>
 HWY_INLINE LaneRaySlope raySlope(const FrameTables& frame, const LaneTriangles<kUniform>& t,
                                  const LaneBarycentrics& p, const Surface& s) {
     const InstanceSetup& instance = frame.instances[s.instance];
-    const Vec3 n = worldNormal(t, p, s, instance);
-    const Vec3 tangent = worldTangent(t, p, s, instance);
-    const Vec3 bitangent = worldBitangent(t, s, instance, n, tangent);
-    const Vec3 to_eye = towardsEye(*frame.view, worldPosition(t, p, s, instance));
-    const FVec cosine =
-        hn::Max(hn::Mul(dot3(n, to_eye), t.word(kWordFlip)), splat(kParallaxMinCosine));
+    const Vec3 n = worldNormal(t, p, instance);
+    const Vec3 tangent = worldTangent(t, p, instance);
+    const Vec3 bitangent = worldBitangent(t, instance, n, tangent);
+    const Vec3 to_eye = towardsEye(*frame.view, worldPosition(t, p, instance));
+    const FVec cosine = hn::Max(hn::Mul(dot3(n, to_eye), p.flip), splat(kParallaxMinCosine));
     const FVec scale = hn::Neg(hn::Div(splat(s.material->height_scale), cosine));
     return {hn::Mul(dot3(tangent, to_eye), scale), hn::Mul(dot3(bitangent, to_eye), scale)};
 }
@@ -55,6 +55,7 @@ HWY_NOINLINE LaneTexture displacedCoordinates(const FrameTables& frame,
     return at;
 }
 
+}  // namespace shading
 }  // namespace HWY_NAMESPACE
 }  // namespace still::internal
 HWY_AFTER_NAMESPACE();

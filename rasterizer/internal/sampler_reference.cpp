@@ -80,8 +80,8 @@ Footprint footprint(float u, float v, const TextureLevel& level, Wrap wrap) {
               f.fx);
     texelPair((1.0f - wrapped(v, wrap)) * float(int(level.height)) - 0.5f, int(level.height), wrap,
               y0, y1, f.fy);
-    const uint32_t row0 = level.offset + uint32_t(y0) * level.width;
-    const uint32_t row1 = level.offset + uint32_t(y1) * level.width;
+    const uint32_t row0 = level.offset + uint32_t(y0) * level.stride;
+    const uint32_t row1 = level.offset + uint32_t(y1) * level.stride;
     f.index[0] = row0 + uint32_t(x0);
     f.index[1] = row0 + uint32_t(x1);
     f.index[2] = row1 + uint32_t(x0);

@@ -1,31 +1,38 @@
 // Shading, one pixel per lane; see shade_reference.cpp for the truth.
 // Included once per target by kernels_simd.cpp. Phases of a group of lanes: barycentrics → texture
-// coordinates → normal → light → colour → motion → merge into the group's outputs.
+// coordinates → normal → light → colour → merge into the group's outputs. Depth and motion of what
+// stands still go before, in a pass of their own.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
 namespace HWY_NAMESPACE {
+namespace shading {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Planes of one group of pixels, as 32-bit lanes until they are stored.
+/// Motion and earlier depth as the planes hold them.
+struct LaneMotion {
+    IVec packed;  ///< Motion: x in the low half
+    IVec depth_before;
+};
+
+/// What shading finds out about a group of pixels, as 32-bit lanes until it is stored.
 struct GroupOutput {
     IVec red, green, blue, id;
     IVec normal;
-    IVec motion_x, motion_y, depth_before;
+    bool own_motion;  ///< the surface moves by itself; otherwise `motion` is not used
+    LaneMotion motion;
 };
 
-/// Where a group lies and what all its lanes share.
+/// Consecutive pixels of a row.
 struct Group {
     const TileContext* tile;
-    FVec x, y;  ///< tile-local
-    FVec depth;
+    FVec x, y;     ///< tile-local
+    ptrdiff_t at;  ///< of the first lane in the planes
 };
 
 HWY_INLINE Vec3 bumped(const Vec3& n, const Vec3& t, const Vec3& b, const Vec3& raw) {
-    const auto unpack = [](FVec v) {
-        return hn::Sub(hn::Mul(v, splat(kTexelToNormal)), splat(1.0f));
-    };
-    const FVec x = unpack(raw.x), y = unpack(raw.y), z = unpack(raw.z);
+    const FVec one = splat(1.0f);
+    const FVec x = hn::Sub(raw.x, one), y = hn::Sub(raw.y, one), z = hn::Sub(raw.z, one);
     const auto combine = [&](FVec tc, FVec bc, FVec nc) {
         return hn::Add(hn::Add(hn::Mul(tc, x), hn::Mul(bc, y)), hn::Mul(nc, z));
     };
@@ -34,17 +41,23 @@ HWY_INLINE Vec3 bumped(const Vec3& n, const Vec3& t, const Vec3& b, const Vec3& 
 
 template <bool kFull, bool kUniform>
 HWY_INLINE Vec3 shadingNormal(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                              const Surface& s, const InstanceSetup& instance,
-                              const LaneTexture& c) {
-    Vec3 n = worldNormal(t, p, s, instance);
+                              const Surface& s, const InstanceSetup& instance, const LaneTexture& c,
+                              const LaneSample& of_colour) {
+    Vec3 n = worldNormal(t, p, instance);
     if constexpr (kFull) {
         if (s.normal != nullptr) {
-            const Vec3 tangent = worldTangent(t, p, s, instance);
-            const Vec3 bitangent = worldBitangent(t, s, instance, n, tangent);
-            n = bumped(n, tangent, bitangent, sampleTexture<false>(*s.normal, c, s.mip_bias_fx8));
+            const Vec3 tangent = worldTangent(t, p, instance);
+            const Vec3 bitangent = worldBitangent(t, instance, n, tangent);
+            LaneSample own;
+            if (!s.normal_like_colour) {
+                findTexels(*s.normal, c, s.mip_bias_fx8, own);
+            }
+            n = bumped(n, tangent, bitangent,
+                       sampleTexture<false>(*s.normal, s.normal_like_colour ? of_colour : own,
+                                            kTexelToNormal));
         }
     }
-    return scale3(n, t.word(kWordFlip));
+    return scale3(n, p.flip);
 }
 
 struct LaneLight {
@@ -83,21 +96,23 @@ HWY_INLINE void addLight(LaneLight& lit, const Vec3& to_light, const std::array<
 }
 
 template <bool kFull, bool kUniform>
-HWY_INLINE LaneLight lightSurface(const Group& group, const LaneTriangles<kUniform>& t,
+HWY_INLINE LaneLight lightSurface(const TileContext& tile, const LaneTriangles<kUniform>& t,
                                   const LaneBarycentrics& p, const Surface& s,
                                   const InstanceSetup& instance, const Vec3& n) {
-    const Lighting& lighting = group.tile->frame->list->lighting;
+    const Lighting& lighting = tile.frame->list->lighting;
     const FVec zero = hn::Zero(FTag());
     LaneLight lit{
         {splat(lighting.ambient[0]), splat(lighting.ambient[1]), splat(lighting.ambient[2])},
         {zero, zero, zero}};
     Vec3 position{zero, zero, zero}, to_eye{zero, zero, zero};
     if (kFull && (s.features & kShadePosition) != 0) {
-        position = worldPosition(t, p, s, instance);
-        to_eye = towardsEye(*group.tile->frame->view, position);
+        position = worldPosition(t, p, instance);
     }
     const std::array<float, 3>& d = lighting.sun.direction;
     const int shininess = kFull ? s.shininess : 0;
+    if (shininess > 0) {
+        to_eye = towardsEye(*tile.frame->view, position);
+    }
     addLight(lit, {splat(-d[0]), splat(-d[1]), splat(-d[2])}, lighting.sun.colour, splat(1.0f), n,
              to_eye, shininess);
     if constexpr (kFull) {
@@ -115,7 +130,7 @@ HWY_INLINE LaneLight lightSurface(const Group& group, const LaneTriangles<kUnifo
 
 HWY_INLINE IVec toFx12(FVec linear) {
     const FVec bounded = hn::Min(hn::Max(linear, hn::Zero(FTag())), splat(kColourMax));
-    return roundLanes(FTag(), hn::Mul(bounded, splat(kColourScale)));
+    return roundSmall(hn::Mul(bounded, splat(kColourScale)));
 }
 
 HWY_INLINE IVec packOctahedral(const Vec3& n) {
@@ -124,13 +139,16 @@ HWY_INLINE IVec packOctahedral(const Vec3& n) {
         hn::Max(hn::Add(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Abs(n.z)), splat(kTiny));
     const FVec inv = hn::Div(one, sum);
     const FVec px = hn::Mul(n.x, inv), py = hn::Mul(n.y, inv);
-    const auto sign = [&](FVec v) { return hn::IfThenElse(hn::Lt(v, zero), splat(-1.0f), one); };
+    const auto snorm = [](FVec f) {
+        return hn::And(roundSmall(hn::Mul(f, splat(kSnormScale))), splatInt(0xFFFF));
+    };
     const auto below = hn::Lt(n.z, zero);
+    if (hn::AllFalse(FTag(), below)) {
+        return hn::Or(snorm(px), hn::ShiftLeft<16>(snorm(py)));
+    }
+    const auto sign = [&](FVec v) { return hn::IfThenElse(hn::Lt(v, zero), splat(-1.0f), one); };
     const FVec u = hn::IfThenElse(below, hn::Mul(hn::Sub(one, hn::Abs(py)), sign(px)), px);
     const FVec v = hn::IfThenElse(below, hn::Mul(hn::Sub(one, hn::Abs(px)), sign(py)), py);
-    const auto snorm = [](FVec f) {
-        return hn::And(roundLanes(FTag(), hn::Mul(f, splat(kSnormScale))), splatInt(0xFFFF));
-    };
     return hn::Or(snorm(u), hn::ShiftLeft<16>(snorm(v)));
 }
 
@@ -143,16 +161,16 @@ HWY_INLINE FVec safeInverse(FVec w) {
     return hn::Div(one, hn::IfThenElse(hn::Gt(w, splat(1e-20f)), w, one));
 }
 
-HWY_INLINE LaneReprojected reprojectStatic(const Group& g) {
-    const auto& m = g.tile->reproject.m;
+HWY_INLINE LaneReprojected reprojectStatic(const TileContext& tile, FVec x, FVec y, FVec depth) {
+    const auto& m = tile.reproject.m;
     FVec q[4];
     for (int i = 0; i < 4; ++i) {
-        q[i] = hn::Add(hn::Add(hn::Add(hn::Mul(splat(m[i][0]), g.x), hn::Mul(splat(m[i][1]), g.y)),
-                               hn::Mul(splat(m[i][2]), g.depth)),
+        q[i] = hn::Add(hn::Add(hn::Add(hn::Mul(splat(m[i][0]), x), hn::Mul(splat(m[i][1]), y)),
+                               hn::Mul(splat(m[i][2]), depth)),
                        splat(m[i][3]));
     }
     const FVec inv = safeInverse(q[3]);
-    return {hn::Sub(hn::Mul(q[0], inv), g.x), hn::Sub(hn::Mul(q[1], inv), g.y), hn::Mul(q[2], inv),
+    return {hn::Sub(hn::Mul(q[0], inv), x), hn::Sub(hn::Mul(q[1], inv), y), hn::Mul(q[2], inv),
             q[3]};
 }
 
@@ -176,46 +194,64 @@ HWY_INLINE IVec logDepthLanes(FVec depth) {
     return hn::Min(hn::Max(v, splatInt(0)), splatInt(65535));
 }
 
-HWY_INLINE void setMotion(const LaneReprojected& r, GroupOutput& out) {
+HWY_INLINE LaneMotion motionOf(const LaneReprojected& r) {
     const FVec limit = splat(kMotionMax_px);
     const FMask known = hn::And(hn::Gt(r.w, splat(1e-20f)),
                                 hn::And(hn::Lt(hn::Abs(r.x), limit), hn::Lt(hn::Abs(r.y), limit)));
     const auto known_i = hn::RebindMask(ITag(), known);
     const auto fx8 = [&](FVec v) {
-        return roundLanes(FTag(), hn::Mul(hn::IfThenElseZero(known, v), splat(kMotionScale)));
+        return roundSmall(hn::Mul(hn::IfThenElseZero(known, v), splat(kMotionScale)));
     };
-    out.motion_x = hn::IfThenElse(known_i, fx8(r.x), splatInt(int32_t{kNoHistory}));
-    out.motion_y = fx8(r.y);
-    out.depth_before =
-        hn::IfThenElseZero(known_i, logDepthLanes(hn::IfThenElseZero(known, r.depth)));
+    const IVec x = hn::And(fx8(r.x), splatInt(0xFFFF));
+    const IVec packed = hn::Or(x, hn::ShiftLeft<16>(fx8(r.y)));
+    return {hn::IfThenElse(known_i, packed, splatInt(int32_t{kNoHistory} & 0xFFFF)),
+            hn::IfThenElseZero(known_i, logDepthLanes(hn::IfThenElseZero(known, r.depth)))};
 }
 
-HWY_INLINE GroupOutput backgroundOutput(const Group& group) {
-    const std::array<float, 3>& background = group.tile->frame->list->background;
-    const IVec zero = hn::Zero(ITag());
-    GroupOutput out{toFx12(splat(background[0])),
-                    toFx12(splat(background[1])),
-                    toFx12(splat(background[2])),
-                    zero,
-                    zero,
-                    zero,
-                    zero,
-                    zero};
-    if (group.tile->planes.motion != nullptr) {
-        setMotion(reprojectStatic(group), out);
+using U16Tag = hn::Rebind<uint16_t, ITag>;
+
+HWY_INLINE IVec loadU16(const uint16_t* from) {
+    return hn::PromoteTo(ITag(), hn::LoadU(U16Tag(), from));
+}
+
+HWY_INLINE void storeU16(IVec v, uint16_t* to) {
+    hn::StoreU(hn::DemoteTo(U16Tag(), v), U16Tag(), to);
+}
+
+HWY_INLINE void storeMotion(const TilePlanes& planes, ptrdiff_t at, const LaneMotion& m) {
+    hn::StoreU(m.packed, ITag(), reinterpret_cast<int32_t*>(planes.motion + at));
+    storeU16(m.depth_before, planes.depth_before + at);
+}
+
+/// What follows from the depth alone: its plane, and motion as if nothing but the camera moved.
+HWY_NOINLINE void writeDepthAndMotion(const TileContext& tile) {
+    const TilePlanes& planes = tile.planes;
+    const int lanes = int(hn::Lanes(FTag()));
+    for (int y = 0; y < tile.height; ++y) {
+        for (int x = 0; x < tile.width; x += lanes) {
+            const FVec depth = hn::LoadU(FTag(), tile.depth + y * kTileSize + x);
+            const ptrdiff_t at = y * planes.stride + x;
+            hn::StoreU(hn::BitCast(UTag(), depth), UTag(), planes.depth + at);
+            if (planes.motion != nullptr) {
+                storeMotion(planes, at,
+                            motionOf(reprojectStatic(tile, hn::Iota(FTag(), float(x)),
+                                                     splat(float(y)), depth)));
+            } else if (planes.depth_before != nullptr) {
+                storeU16(logDepthLanes(depth), planes.depth_before + at);
+            }
+        }
     }
-    return out;
 }
 
 /// Levels of specialisation: 0 = plain colours, 1 = textures, 2 = everything but height maps, 3 =
 /// with them.
 template <int kLevel, bool kUniform>
-HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUniform>& t,
-                                    uint32_t surface) {
-    const FrameTables& frame = *group.tile->frame;
+HWY_INLINE GroupOutput shadeSurface(const TileContext& tile, FVec x, FVec y,
+                                    const LaneTriangles<kUniform>& t, uint32_t surface) {
+    const FrameTables& frame = *tile.frame;
     const Surface& s = frame.surfaces[surface];
     const InstanceSetup& instance = frame.instances[s.instance];
-    const LaneBarycentrics p = barycentrics(t, group.x, group.y);
+    const LaneBarycentrics p = barycentrics(t, x, y);
     LaneTexture c{};
     if (kLevel >= 1 && (s.features & (kShadeTexture | kShadeNormalMap)) != 0) {
         c = textureCoordinates(t, p, s);
@@ -223,16 +259,18 @@ HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUni
             c = displacedCoordinates(frame, t, p, s, c);
         }
     }
-    const Vec3 n = shadingNormal<kLevel >= 2>(t, p, s, instance, c);
-    const LaneLight lit = lightSurface<kLevel >= 2>(group, t, p, s, instance, n);
+    LaneSample sample;
+    if (kLevel >= 1 && s.colour != nullptr) {
+        findTexels(*s.colour, c, s.mip_bias_fx8, sample);
+    }
+    const Vec3 n = shadingNormal<kLevel >= 2>(t, p, s, instance, c, sample);
+    const LaneLight lit = lightSurface<kLevel >= 2>(tile, t, p, s, instance, n);
     const Material& m = *s.material;
     Vec3 albedo{splat(m.diffuse[0]), splat(m.diffuse[1]), splat(m.diffuse[2])};
     if (kLevel >= 1 && s.colour != nullptr) {
-        const Vec3 texel = sampleTexture<true>(*s.colour, c, s.mip_bias_fx8);
-        const FVec linear = splat(kTexelToLinear);
-        albedo = {hn::Mul(albedo.x, hn::Mul(texel.x, linear)),
-                  hn::Mul(albedo.y, hn::Mul(texel.y, linear)),
-                  hn::Mul(albedo.z, hn::Mul(texel.z, linear))};
+        const Vec3 texel = sampleTexture<true>(*s.colour, sample, kTexelToLinear);
+        albedo = {hn::Mul(albedo.x, texel.x), hn::Mul(albedo.y, texel.y),
+                  hn::Mul(albedo.z, texel.z)};
     }
     Vec3 colour{hn::Add(hn::Mul(albedo.x, lit.diffuse.x), splat(m.emission[0])),
                 hn::Add(hn::Mul(albedo.y, lit.diffuse.y), splat(m.emission[1])),
@@ -248,159 +286,204 @@ HWY_INLINE GroupOutput shadeSurface(const Group& group, const LaneTriangles<kUni
                     toFx12(colour.z),
                     splatInt(int32_t(surface | (instance.moved ? kMovedBit : 0u))),
                     zero,
-                    zero,
-                    zero,
-                    zero};
+                    instance.own_motion && tile.planes.motion != nullptr,
+                    {zero, zero}};
     if (frame.planes.normal) {
         out.normal = packOctahedral(n);
     }
-    if (group.tile->planes.motion != nullptr) {
-        setMotion(instance.own_motion ? reprojectMoved(instance, objectPosition(t, p, s))
-                                      : reprojectStatic(group),
-                  out);
+    if (out.own_motion) {
+        out.motion = motionOf(reprojectMoved(instance, attribute3(t, p, kQuadPosition)));
     }
     return out;
 }
 
-HWY_INLINE void merge(GroupOutput& into, const GroupOutput& from, hn::Mask<ITag> mask) {
-    into.red = hn::IfThenElse(mask, from.red, into.red);
-    into.green = hn::IfThenElse(mask, from.green, into.green);
-    into.blue = hn::IfThenElse(mask, from.blue, into.blue);
-    into.id = hn::IfThenElse(mask, from.id, into.id);
-    into.normal = hn::IfThenElse(mask, from.normal, into.normal);
-    into.motion_x = hn::IfThenElse(mask, from.motion_x, into.motion_x);
-    into.motion_y = hn::IfThenElse(mask, from.motion_y, into.motion_y);
-    into.depth_before = hn::IfThenElse(mask, from.depth_before, into.depth_before);
-}
-
-using U16Tag = hn::Rebind<uint16_t, ITag>;
-
-HWY_INLINE IVec loadU16(const uint16_t* from) {
-    return hn::PromoteTo(ITag(), hn::LoadU(U16Tag(), from));
-}
-
-HWY_INLINE void storeU16(IVec v, uint16_t* to) {
-    hn::StoreU(hn::DemoteTo(U16Tag(), v), U16Tag(), to);
-}
-
-HWY_INLINE void storeGroup(const Group& group, const GroupOutput& out, ptrdiff_t at) {
-    const TilePlanes& planes = group.tile->planes;
+/// Without motion.
+HWY_INLINE void storePlanes(const TilePlanes& planes, ptrdiff_t at, const GroupOutput& out) {
     storeU16(out.red, planes.red + at);
     storeU16(out.green, planes.green + at);
     storeU16(out.blue, planes.blue + at);
     storeU16(out.id, planes.id + at);
-    hn::StoreU(hn::BitCast(UTag(), group.depth), UTag(), planes.depth + at);
     if (planes.normal != nullptr) {
         hn::StoreU(out.normal, ITag(), reinterpret_cast<int32_t*>(planes.normal + at));
     }
-    if (planes.motion != nullptr) {
-        const IVec packed =
-            hn::Or(hn::And(out.motion_x, splatInt(0xFFFF)), hn::ShiftLeft<16>(out.motion_y));
-        hn::StoreU(packed, ITag(), reinterpret_cast<int32_t*>(planes.motion + at));
-        storeU16(out.depth_before, planes.depth_before + at);
-    }
 }
 
-/// What the planes hold already: forward shading merges into it.
-HWY_INLINE GroupOutput loadGroup(const Group& group, ptrdiff_t at) {
-    const TilePlanes& planes = group.tile->planes;
+HWY_INLINE void storeBackground(const Group& group) {
+    const std::array<float, 3>& background = group.tile->frame->list->background;
     const IVec zero = hn::Zero(ITag());
-    GroupOutput out{loadU16(planes.red + at),
-                    loadU16(planes.green + at),
-                    loadU16(planes.blue + at),
-                    loadU16(planes.id + at),
-                    zero,
-                    zero,
-                    zero,
-                    zero};
-    if (planes.normal != nullptr) {
-        out.normal = hn::LoadU(ITag(), reinterpret_cast<const int32_t*>(planes.normal + at));
-    }
-    if (planes.motion != nullptr) {
-        const IVec packed = hn::LoadU(ITag(), reinterpret_cast<const int32_t*>(planes.motion + at));
-        out.motion_x = hn::ShiftRight<16>(hn::ShiftLeft<16>(packed));
-        out.motion_y = hn::ShiftRight<16>(packed);
-        out.depth_before = loadU16(planes.depth_before + at);
-    }
-    return out;
+    storePlanes(group.tile->planes, group.at,
+                {toFx12(splat(background[0])),
+                 toFx12(splat(background[1])),
+                 toFx12(splat(background[2])),
+                 zero,
+                 zero,
+                 false,
+                 {zero, zero}});
 }
 
-/// Lanes of `mask` show different triangles of one surface.
+/// All lanes show triangle `ref`.
 template <int kLevel>
-HWY_NOINLINE GroupOutput shadeMixedSurface(const Group& group, IVec refs, hn::Mask<ITag> mask,
-                                           int first_lane_ref, uint32_t surface) {
-    const ShadeTriangle* shade = group.tile->shade;
-    LaneTriangles<false> t;
-    t.words = reinterpret_cast<const float*>(shade);
-    // Other lanes borrow a triangle of this surface, so that every gather stays in its arrays.
-    const IVec own = hn::IfThenElse(mask, refs, splatInt(first_lane_ref));
-    t.first_word = hn::ShiftLeft<4>(own);
-    const int32_t* words = reinterpret_cast<const int32_t*>(shade);
-    for (int k = 0; k < 3; ++k) {
-        t.vertex[k] =
-            hn::GatherIndex(ITag(), words, hn::Add(t.first_word, splatInt(kWordVertex + k)));
+HWY_NOINLINE void shadeUniform(const Group& group, uint32_t ref) {
+    const TileContext& tile = *group.tile;
+    const LaneTriangles<true> t{&tile.shade[ref]};
+    const GroupOutput out = shadeSurface<kLevel>(tile, group.x, group.y, t, uint32_t(t.t->surface));
+    storePlanes(tile.planes, group.at, out);
+    if (out.own_motion) {
+        storeMotion(tile.planes, group.at, out.motion);
     }
-    return shadeSurface<kLevel>(group, t, surface);
 }
 
+/// Lanes show the triangles `refs` of one surface.
 template <int kLevel>
-HWY_NOINLINE GroupOutput shadeTriangle(const Group& group, uint32_t ref) {
-    const LaneTriangles<true> t{&group.tile->shade[ref]};
-    return shadeSurface<kLevel>(group, t, uint32_t(t.t->surface));
+HWY_NOINLINE GroupOutput shadeMixed(const TileContext& tile, FVec x, FVec y, IVec refs,
+                                    uint32_t surface) {
+    alignas(64) int32_t first_word[hn::MaxLanes(ITag())];
+    hn::Store(hn::ShiftLeft<6>(refs), ITag(), first_word);
+    static_assert(sizeof(ShadeTriangle) == 4 << 6);
+    const LaneTriangles<false> t{reinterpret_cast<const float*>(tile.shade), first_word};
+    return shadeSurface<kLevel>(tile, x, y, t, surface);
 }
 
+/// Pixels of one surface from groups that show several ones, until there are enough for a group.
+struct PixelQueue {
+    static constexpr int kCapacity = 2 * int(hn::MaxLanes(ITag()));
+    int32_t surface = 0;
+    int count = 0;
+    alignas(64) int32_t pixel[kCapacity] = {};  ///< y · kTileSize + x
+    alignas(64) int32_t ref[kCapacity] = {};
+};
+
+/// Shades the first pixels of the queue and takes them out of it.
 template <int kLevel>
-HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, ptrdiff_t at) {
-    constexpr size_t kMaxLanes = 8;
-    const size_t lanes = hn::Lanes(ITag());
-    const IVec refs = hn::LoadU(ITag(), reinterpret_cast<const int32_t*>(visible));
-    const uint32_t first = visible[0];
-    GroupOutput out;
-    if (hn::AllTrue(ITag(), hn::Eq(refs, splatInt(int32_t(first))))) {
-        if (first == kNothingVisible) {
-            out = backgroundOutput(group);
-        } else {
-            out = shadeTriangle<kLevel>(group, first);
+HWY_NOINLINE void shadeQueued(const TileContext& tile, PixelQueue& queue) {
+    constexpr int kLanes = int(hn::MaxLanes(ITag()));
+    const ITag d;
+    const int count = std::min(queue.count, kLanes);
+    // Other lanes repeat the first one.
+    const auto valid = hn::FirstN(d, size_t(count));
+    const IVec pixel = hn::IfThenElse(valid, hn::Load(d, queue.pixel), splatInt(queue.pixel[0]));
+    const IVec ref = hn::IfThenElse(valid, hn::Load(d, queue.ref), splatInt(queue.ref[0]));
+    const FVec x = hn::ConvertTo(FTag(), hn::And(pixel, splatInt(kTileSize - 1)));
+    const FVec y = hn::ConvertTo(FTag(), hn::ShiftRight<6>(pixel));
+    static_assert(kTileSize == 1 << 6);
+    const GroupOutput out = shadeMixed<kLevel>(tile, x, y, ref, uint32_t(queue.surface));
+    alignas(64) int32_t value[7][kLanes];
+    const IVec outputs[7] = {out.red,
+                             out.green,
+                             out.blue,
+                             out.id,
+                             out.normal,
+                             out.motion.packed,
+                             out.motion.depth_before};
+    for (int k = 0; k < (out.own_motion ? 7 : 5); ++k) {
+        hn::Store(outputs[k], d, value[k]);
+    }
+    const TilePlanes& planes = tile.planes;
+    for (int lane = 0; lane < count; ++lane) {
+        const int i = queue.pixel[lane];
+        const ptrdiff_t at = (i / kTileSize) * planes.stride + i % kTileSize;
+        planes.red[at] = uint16_t(value[0][lane]);
+        planes.green[at] = uint16_t(value[1][lane]);
+        planes.blue[at] = uint16_t(value[2][lane]);
+        planes.id[at] = uint16_t(value[3][lane]);
+        if (planes.normal != nullptr) {
+            planes.normal[at] = uint32_t(value[4][lane]);
         }
-        storeGroup(group, out, at);
+        if (out.own_motion) {
+            std::memcpy(planes.motion + at, &value[5][lane], sizeof(Motion));
+            planes.depth_before[at] = uint16_t(value[6][lane]);
+        }
+    }
+    queue.count -= count;
+    hn::Store(hn::Load(d, queue.pixel + kLanes), d, queue.pixel);
+    hn::Store(hn::Load(d, queue.ref + kLanes), d, queue.ref);
+}
+
+/// A surface has its queue by its number; two that meet in one take turns.
+struct PixelQueues {
+    static constexpr uint32_t kCount = 16;
+    PixelQueue queue[kCount];
+
+    template <int kLevel>
+    PixelQueue& of(const TileContext& tile, int32_t surface) {
+        PixelQueue& q = queue[uint32_t(surface) % kCount];
+        if (q.surface != surface) {
+            if (q.count > 0) {
+                shadeQueued<kLevel>(tile, q);
+            }
+            q.surface = surface;
+        }
+        return q;
+    }
+};
+
+template <int kLevel>
+HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, PixelQueues& queues) {
+    constexpr size_t kLanes = hn::MaxLanes(ITag());
+    const ITag d;
+    const TileContext& tile = *group.tile;
+    const IVec refs = hn::LoadU(d, reinterpret_cast<const int32_t*>(visible));
+    const uint32_t first = visible[0];
+    if (hn::AllTrue(d, hn::Eq(refs, splatInt(int32_t(first))))) {
+        if (first == kNothingVisible) {
+            storeBackground(group);
+        } else {
+            shadeUniform<kLevel>(group, first);
+        }
         return;
     }
-    out = backgroundOutput(group);
-    alignas(32) int32_t surface_of[kMaxLanes];
-    for (size_t lane = 0; lane < lanes; ++lane) {
+    alignas(64) int32_t surface_of[kLanes];
+    for (size_t lane = 0; lane < kLanes; ++lane) {
         const uint32_t ref = visible[lane];
-        surface_of[lane] = ref == kNothingVisible ? 0 : group.tile->shade[ref].surface;
+        surface_of[lane] = ref == kNothingVisible ? 0 : tile.shade[ref].surface;
     }
-    const IVec surfaces = hn::LoadU(ITag(), surface_of);
-    for (size_t lane = 0; lane < lanes; ++lane) {
+    const IVec surfaces = hn::Load(d, surface_of);
+    if (surface_of[0] != 0 && hn::AllTrue(d, hn::Eq(surfaces, splatInt(surface_of[0])))) {
+        const GroupOutput out =
+            shadeMixed<kLevel>(tile, group.x, group.y, refs, uint32_t(surface_of[0]));
+        storePlanes(tile.planes, group.at, out);
+        if (out.own_motion) {
+            storeMotion(tile.planes, group.at, out.motion);
+        }
+        return;
+    }
+    if (!hn::AllFalse(d, hn::Eq(surfaces, hn::Zero(d)))) {
+        storeBackground(group);
+    }
+    const IVec pixels = hn::Iota(d, int32_t(visible - tile.visible));
+    for (size_t lane = 0; lane < kLanes; ++lane) {
         const int32_t surface = surface_of[lane];
         if (surface == 0) {
             continue;
         }
+        PixelQueue& queue = queues.of<kLevel>(tile, surface);
         const auto mask = hn::Eq(surfaces, splatInt(surface));
-        const uint32_t ref = visible[lane];
-        const auto others = hn::AndNot(hn::Eq(refs, splatInt(int32_t(ref))), mask);
-        merge(out,
-              hn::AllFalse(ITag(), others)
-                  ? shadeTriangle<kLevel>(group, ref)
-                  : shadeMixedSurface<kLevel>(group, refs, mask, int(ref), uint32_t(surface)),
-              mask);
-        for (size_t other = lane; other < lanes; ++other) {
+        hn::CompressStore(pixels, mask, d, queue.pixel + queue.count);
+        queue.count += int(hn::CompressStore(refs, mask, d, queue.ref + queue.count));
+        if (queue.count >= int(kLanes)) {
+            shadeQueued<kLevel>(tile, queue);
+        }
+        for (size_t other = lane; other < kLanes; ++other) {
             surface_of[other] = surface_of[other] == surface ? 0 : surface_of[other];
         }
     }
-    storeGroup(group, out, at);
 }
 
 template <int kLevel>
 HWY_NOINLINE void shadeTileLevel(const TileContext& tile) {
+    writeDepthAndMotion(tile);
+    PixelQueues queues;
     const int lanes = int(hn::Lanes(FTag()));
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; x += lanes) {
-            const int i = y * kTileSize + x;
             const Group group{&tile, hn::Iota(FTag(), float(x)), splat(float(y)),
-                              hn::LoadU(FTag(), tile.depth + i)};
-            shadeGroup<kLevel>(group, tile.visible + i, y * tile.planes.stride + x);
+                              y * tile.planes.stride + x};
+            shadeGroup<kLevel>(group, tile.visible + y * kTileSize + x, queues);
+        }
+    }
+    for (PixelQueue& queue : queues.queue) {
+        if (queue.count > 0) {
+            shadeQueued<kLevel>(tile, queue);
         }
     }
 }
@@ -417,17 +500,47 @@ void shadeTile(const TileContext& tile) {
     }
 }
 
-/// Forward shading: the lanes of `mask` just passed the depth test with triangle `ref`.
-HWY_NOINLINE void shadeFragments(const TileContext& tile, uint32_t ref, int x, int y, FVec depth,
-                                 FMask mask) {
-    const Group group{&tile, hn::Iota(FTag(), float(x)), splat(float(y)), depth};
-    const ptrdiff_t at = y * tile.planes.stride + x;
+/// Forward shading: pixels x + i of row y just passed the depth test with triangle `ref`, for each
+/// set bit i of `passed`. Their depths stand in the tile.
+HWY_NOINLINE void shadeFragments(const TileContext& tile, uint32_t ref, int x, int y,
+                                 uint32_t passed) {
+    const int misaligned = x % int(hn::Lanes(FTag()));
+    x -= misaligned;
+    passed <<= misaligned;
+    const uint8_t bits[8] = {uint8_t(passed), uint8_t(passed >> 8)};
+    const auto mask = hn::RebindMask(ITag(), hn::LoadMaskBits(FTag(), bits));
+    const auto merged = [&](IVec now, IVec before) { return hn::IfThenElse(mask, now, before); };
+    const TilePlanes& planes = tile.planes;
+    const ptrdiff_t at = y * planes.stride + x;
+    const FVec px = hn::Iota(FTag(), float(x)), py = splat(float(y));
+    const FVec depth = hn::LoadU(FTag(), tile.depth + y * kTileSize + x);
+    hn::StoreU(hn::BitCast(UTag(), depth), UTag(), planes.depth + at);
     const LaneTriangles<true> t{&tile.shade[ref]};
-    GroupOutput out = loadGroup(group, at);
-    merge(out, shadeSurface<3>(group, t, uint32_t(t.t->surface)), hn::RebindMask(ITag(), mask));
-    storeGroup(group, out, at);
+    GroupOutput out = shadeSurface<3>(tile, px, py, t, uint32_t(t.t->surface));
+    out.red = merged(out.red, loadU16(planes.red + at));
+    out.green = merged(out.green, loadU16(planes.green + at));
+    out.blue = merged(out.blue, loadU16(planes.blue + at));
+    out.id = merged(out.id, loadU16(planes.id + at));
+    const auto words = [&](const void* from) {
+        return hn::LoadU(ITag(), static_cast<const int32_t*>(from));
+    };
+    if (planes.normal != nullptr) {
+        out.normal = merged(out.normal, words(planes.normal + at));
+    }
+    storePlanes(planes, at, out);
+    if (planes.motion != nullptr) {
+        if (!out.own_motion) {
+            out.motion = motionOf(reprojectStatic(tile, px, py, depth));
+        }
+        storeMotion(planes, at,
+                    {merged(out.motion.packed, words(planes.motion + at)),
+                     merged(out.motion.depth_before, loadU16(planes.depth_before + at))});
+    } else if (planes.depth_before != nullptr) {
+        storeU16(logDepthLanes(depth), planes.depth_before + at);
+    }
 }
 
+}  // namespace shading
 }  // namespace HWY_NAMESPACE
 }  // namespace still::internal
 HWY_AFTER_NAMESPACE();

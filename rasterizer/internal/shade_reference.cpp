@@ -233,6 +233,8 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
     }
     if (tile.planes.motion != nullptr && !own_motion) {
         storeMotion(tile, at, reprojectStatic(tile, x, y, depth));
+    } else if (tile.planes.motion == nullptr && tile.planes.depth_before != nullptr) {
+        tile.planes.depth_before[at] = logDepth16(std::bit_cast<uint32_t>(depth));
     }
 }
 

@@ -41,7 +41,7 @@ HWY_INLINE void markSeen(TileContext& tile) {
 
 /// Narrow triangles that wait for their planes.
 struct alignas(64) ShadeBatch {
-    int32_t vertex[3][kBatch];
+    const uint32_t* vertex[kBatch];  ///< of the three corners
     float inv_w[3][kBatch];
     int32_t surface[kBatch];
     float flip[kBatch];
@@ -84,6 +84,7 @@ HWY_INLINE void flush(TileContext& tile, ShadeBatch& batch) {
     for (int lane = batch.count; lane < kBatch; ++lane) {
         batch.index[lane] = tile.triangle_count;  // behind the last one
     }
+    const int count = batch.count;
     batch.count = 0;
     const int32_t* words = reinterpret_cast<const int32_t*>(tile.triangles);
     BVec word[8];
@@ -122,27 +123,21 @@ HWY_INLINE void flush(TileContext& tile, ShadeBatch& batch) {
 
     const auto plane = [&](const float* from) { return hn::BitCast(d, hn::Load(df, from)); };
     const auto asFloat = [&](BVec v) { return hn::BitCast(d, hn::ConvertTo(df, v)); };
-    BVec out[kShadeWords] = {plane(planes.value[0]),
-                             plane(planes.value[1]),
-                             plane(planes.value[2]),
-                             plane(planes.dx[0]),
-                             plane(planes.dx[1]),
-                             plane(planes.dx[2]),
-                             plane(planes.dy[0]),
-                             plane(planes.dy[1]),
-                             plane(planes.dy[2]),
-                             asFloat(anchor_x),
-                             asFloat(anchor_y),
-                             hn::Load(d, batch.vertex[0]),
-                             hn::Load(d, batch.vertex[1]),
-                             hn::Load(d, batch.vertex[2]),
-                             hn::Load(d, batch.surface),
-                             plane(batch.flip)};
+    BVec out[3][4] = {
+        {plane(planes.value[0]), plane(planes.value[1]), plane(planes.value[2]), asFloat(anchor_x)},
+        {plane(planes.dx[0]), plane(planes.dx[1]), plane(planes.dx[2]), asFloat(anchor_y)},
+        {plane(planes.dy[0]), plane(planes.dy[1]), plane(planes.dy[2]), plane(batch.flip)}};
     int32_t* shade = reinterpret_cast<int32_t*>(tile.shade);
-    for (int first = 0; first < kShadeWords; first += 4) {
-        storeTransposed(out + first, [&](int lane) {
-            return shade + size_t(batch.index[lane]) * kShadeWords + first;
+    constexpr int kShadeWords = sizeof(ShadeTriangle) / sizeof(int32_t);
+    for (int quad = 0; quad < 3; ++quad) {
+        storeTransposed(out[quad], [&](int lane) {
+            return shade + size_t(batch.index[lane]) * kShadeWords + 4 * quad;
         });
+    }
+    for (int lane = 0; lane < count; ++lane) {
+        ShadeTriangle& triangle = tile.shade[batch.index[lane]];
+        triangle.surface = batch.surface[lane];
+        copyAttributes(tile.frame->surfaces[batch.surface[lane]], batch.vertex[lane], triangle);
     }
 }
 
@@ -167,9 +162,9 @@ void prepareShading(TileContext& tile) {
             const uint32_t* index = s.indices + size_t(triangle) * 3;
             const int lane = batch.count++;
             for (int k = 0; k < 3; ++k) {
-                batch.vertex[k][lane] = int32_t(index[k]);
                 batch.inv_w[k][lane] = chunk.vertices[index[k]].inv_w;
             }
+            batch.vertex[lane] = index;
             batch.surface[lane] = chunk.surface;
             batch.flip[lane] = shadingFlip(s, instance, triangle, (id & kSwapped) != 0);
             batch.index[lane] = i;

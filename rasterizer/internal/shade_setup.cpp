@@ -30,6 +30,46 @@ float shadingFlip(const Surface& s, const InstanceSetup& instance, uint32_t tria
     return winding_side_seen == (along >= 0.0) ? 1.0f : -1.0f;
 }
 
+namespace {
+
+/// Σ a_k · b_k in the order of the shading kernels.
+float sum3(const float a[3], const float b[3]) {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+}  // namespace
+
+void copyAttributes(const Surface& s, const uint32_t index[3], ShadeTriangle& out) {
+    for (int k = 0; k < 3; ++k) {
+        const float* attributes = s.attributes + size_t(index[k]) * kAttributeStride;
+        out.nx[k] = attributes[0];
+        out.ny[k] = attributes[1];
+        out.nz[k] = attributes[2];
+        out.u[k] = attributes[3];
+        out.v[k] = attributes[4];
+    }
+    out.sum_dx = (out.p_dx[0] + out.p_dx[1]) + out.p_dx[2];
+    out.sum_dy = (out.p_dy[0] + out.p_dy[1]) + out.p_dy[2];
+    out.u_dx = sum3(out.u, out.p_dx);
+    out.u_dy = sum3(out.u, out.p_dy);
+    out.v_dx = sum3(out.v, out.p_dx);
+    out.v_dy = sum3(out.v, out.p_dy);
+    const bool mapped = (s.features & (kShadeNormalMap | kShadeHeightMap)) != 0;
+    for (int k = 0; k < 3 && mapped; ++k) {
+        const float* tangent = s.tangents + size_t(index[k]) * kTangentStride;
+        out.tx[k] = tangent[0];
+        out.ty[k] = tangent[1];
+        out.tz[k] = tangent[2];
+    }
+    out.handedness = mapped ? s.tangents[size_t(index[0]) * kTangentStride + 3] : 0.0f;
+    constexpr uint8_t kNeedsPosition = kShadePosition | kShadeMoved | kShadeHeightMap;
+    for (int k = 0; k < 3 && (s.features & kNeedsPosition) != 0; ++k) {
+        out.x[k] = s.x[index[k]];
+        out.y[k] = s.y[index[k]];
+        out.z[k] = s.z[index[k]];
+    }
+}
+
 void makeShadeTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
     const FrameTables& frame = *tile.frame;
     const TileTriangle& record = tile.triangles[i];
@@ -86,6 +126,7 @@ void makeShadeTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
     out.surface = chunk.surface;
     // With y down, the triangles that had to be swapped run counter-clockwise on the screen.
     out.flip = shadingFlip(s, frame.instances[s.instance], t.triangle, t.swapped != 0);
+    copyAttributes(s, index, out);
 }
 
 }  // namespace still::internal

@@ -23,4 +23,8 @@ inline void prepareTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
 float shadingFlip(const Surface& s, const InstanceSetup& instance, uint32_t triangle,
                   bool counter_clockwise);
 
+/// Fills the corners' attributes and what follows from them; `index` are the corners' vertices, the
+/// planes stand there already.
+void copyAttributes(const Surface& s, const uint32_t index[3], ShadeTriangle& out);
+
 }  // namespace still::internal

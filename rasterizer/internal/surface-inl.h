@@ -4,9 +4,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
 namespace HWY_NAMESPACE {
+namespace shading {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using FTag = hn::CappedTag<float, 8>;
+/// As many lanes as the target has, up to a quarter of a tile's row.
+using FTag = hn::CappedTag<float, kTileSize / 4>;
 using ITag = hn::RebindToSigned<FTag>;
 using UTag = hn::RebindToUnsigned<FTag>;
 using FVec = hn::Vec<FTag>;
@@ -39,8 +41,61 @@ HWY_INLINE Vec3 normalize3(const Vec3& a) {
     return scale3(a, hn::Div(splat(1.0f), length));
 }
 
+/// An integral value below 2^22 as an integer: the sum with 1.5 · 2^23 holds it in its low bits.
+/// Shorter than a conversion, which has to care about overflow.
+HWY_INLINE IVec smallInt(FVec integral) {
+    return hn::Sub(hn::BitCast(ITag(), hn::Add(integral, splat(12582912.0f))),
+                   splatInt(0x4B400000));
+}
+
+/// floor(v + 0.5) as roundToInt(), for |v| < 2^22.
+HWY_INLINE IVec roundSmall(FVec v) {
+    return smallInt(hn::Floor(hn::Add(v, splat(0.5f))));
+}
+
+/// Four consecutive words of a record, each for all lanes.
+struct Quad {
+    FVec word[4];
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// Word 4 · i of lane 0, 4 · i + 1 of lane 0, … of lane 4, … : 128-bit loads, one per lane quarter.
+template <class D>
+HWY_INLINE hn::Vec<D> everyFourth(D d, const float* words, const int32_t* at) {
+    if constexpr (hn::MaxLanes(D()) <= 4) {
+        return hn::LoadU(d, words + at[0]);
+    } else {
+        const hn::Half<D> half;
+        constexpr int kHalf = hn::MaxLanes(D()) / 2;
+        return hn::Combine(d, everyFourth(half, words, at + kHalf), everyFourth(half, words, at));
+    }
+}
+#endif
+
+/// The quads that start at words + at[lane], transposed. Gathers would load the same words one by
+/// one.
+HWY_INLINE Quad loadQuads(const float* words, const int32_t* at) {
+#if HWY_TARGET == HWY_SCALAR
+    const float* w = words + at[0];
+    return {{splat(w[0]), splat(w[1]), splat(w[2]), splat(w[3])}};
+#else
+    const FTag d;
+    const hn::RepartitionToWide<FTag> d64;
+    const FVec row[4] = {everyFourth(d, words, at), everyFourth(d, words, at + 1),
+                         everyFourth(d, words, at + 2), everyFourth(d, words, at + 3)};
+    const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, row[0], row[1]));
+    const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d, row[2], row[3]));
+    const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d, row[0], row[1]));
+    const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d, row[2], row[3]));
+    return {{hn::BitCast(d, hn::InterleaveLower(d64, low01, low23)),
+             hn::BitCast(d, hn::InterleaveUpper(d64, low01, low23)),
+             hn::BitCast(d, hn::InterleaveLower(d64, high01, high23)),
+             hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23))}};
+#endif
+}
+
 /// Which triangle each lane shades. With kUniform all lanes have the same one and everything that
-/// belongs to it is broadcast; otherwise it is gathered. Both give the same values.
+/// belongs to it is broadcast; otherwise it is loaded lane by lane. Both give the same values.
 template <bool kUniform>
 struct LaneTriangles;
 
@@ -48,76 +103,77 @@ template <>
 struct LaneTriangles<true> {
     const ShadeTriangle* t;
 
-    FVec word(int i) const { return splat(reinterpret_cast<const float*>(t)[i]); }
-    FVec vertexField(const float* base, int stride, int field, int k) const {
-        return splat(base[t->vertex[k] * stride + field]);
+    Quad quad(int i) const {
+        const float* w = reinterpret_cast<const float*>(t) + 4 * i;
+        return {{splat(w[0]), splat(w[1]), splat(w[2]), splat(w[3])}};
     }
 };
 
 template <>
 struct LaneTriangles<false> {
-    const float* words;  ///< of the tile's shade array
-    IVec first_word;     ///< of each lane's triangle
-    IVec vertex[3];
+    const float* words;         ///< of the tile's shade array
+    const int32_t* first_word;  ///< of each lane's triangle
 
-    FVec word(int i) const {
-        return hn::GatherIndex(FTag(), words, hn::Add(first_word, splatInt(i)));
-    }
-    FVec vertexField(const float* base, int stride, int field, int k) const {
-        const IVec at = hn::Add(hn::Mul(vertex[k], splatInt(stride)), splatInt(field));
-        return hn::GatherIndex(FTag(), base, at);
-    }
+    Quad quad(int i) const { return loadQuads(words + 4 * i, first_word); }
 };
 
-/// Word offsets of ShadeTriangle.
+/// Quads of ShadeTriangle.
 enum : int {
-    kWordP = 0,
-    kWordDx = 3,
-    kWordDy = 6,
-    kWordAnchorX = 9,
-    kWordAnchorY = 10,
-    kWordVertex = 11,
-    kWordFlip = 15
+    kQuadP,
+    kQuadDx,
+    kQuadDy,
+    kQuadU,
+    kQuadV,
+    kQuadSlopes,
+    kQuadNormal,
+    kQuadPosition = kQuadNormal + 3,
+    kQuadTangent = kQuadPosition + 3,
 };
+static_assert(offsetof(ShadeTriangle, u) == kQuadU * 16);
+static_assert(offsetof(ShadeTriangle, nx) == kQuadNormal * 16);
+static_assert(offsetof(ShadeTriangle, x) == kQuadPosition * 16);
+static_assert(offsetof(ShadeTriangle, tx) == kQuadTangent * 16);
 
 struct LaneBarycentrics {
     FVec b[3];
     FVec w;
+    FVec flip;
 };
 
 template <class Triangles>
 HWY_INLINE LaneBarycentrics barycentrics(const Triangles& t, FVec x, FVec y) {
-    LaneBarycentrics p;
-    const FVec rx = hn::Sub(x, t.word(kWordAnchorX));
-    const FVec ry = hn::Sub(y, t.word(kWordAnchorY));
+    const Quad p = t.quad(kQuadP), dx = t.quad(kQuadDx), dy = t.quad(kQuadDy);
+    LaneBarycentrics out;
+    const FVec rx = hn::Sub(x, p.word[3]);
+    const FVec ry = hn::Sub(y, dx.word[3]);
     for (int k = 0; k < 3; ++k) {
-        const FVec v = hn::Add(hn::Add(t.word(kWordP + k), hn::Mul(t.word(kWordDy + k), ry)),
-                               hn::Mul(t.word(kWordDx + k), rx));
-        p.b[k] = hn::Max(v, hn::Zero(FTag()));
+        const FVec v =
+            hn::Add(hn::Add(p.word[k], hn::Mul(dy.word[k], ry)), hn::Mul(dx.word[k], rx));
+        out.b[k] = hn::Max(v, hn::Zero(FTag()));
     }
-    p.w = hn::Div(splat(1.0f), hn::Max(hn::Add(hn::Add(p.b[0], p.b[1]), p.b[2]), splat(kTiny)));
-    for (FVec& b : p.b) {
-        b = hn::Mul(b, p.w);
+    out.w =
+        hn::Div(splat(1.0f), hn::Max(hn::Add(hn::Add(out.b[0], out.b[1]), out.b[2]), splat(kTiny)));
+    for (FVec& b : out.b) {
+        b = hn::Mul(b, out.w);
     }
-    return p;
+    out.flip = dy.word[3];
+    return out;
 }
 
 HWY_INLINE FVec interpolate3(const FVec b[3], FVec f0, FVec f1, FVec f2) {
     return hn::Add(hn::Add(hn::Mul(b[0], f0), hn::Mul(b[1], f1)), hn::Mul(b[2], f2));
 }
 
-template <class Triangles>
-HWY_INLINE FVec attribute(const Triangles& t, const LaneBarycentrics& p, const float* base,
-                          int stride, int field) {
-    return interpolate3(p.b, t.vertexField(base, stride, field, 0),
-                        t.vertexField(base, stride, field, 1),
-                        t.vertexField(base, stride, field, 2));
+/// The attribute whose corner values are the first three words of the quad.
+HWY_INLINE FVec attribute(const LaneBarycentrics& p, const Quad& corners) {
+    return interpolate3(p.b, corners.word[0], corners.word[1], corners.word[2]);
 }
 
-template <bool kUniform>
-HWY_INLINE Vec3 objectPosition(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                               const Surface& s) {
-    return {attribute(t, p, s.x, 1, 0), attribute(t, p, s.y, 1, 0), attribute(t, p, s.z, 1, 0)};
+/// Three attributes in consecutive quads.
+template <class Triangles>
+HWY_INLINE Vec3 attribute3(const Triangles& t, const LaneBarycentrics& p, int quad) {
+    return {attribute(p, t.quad(quad)), attribute(p, t.quad(quad + 1)),
+            attribute(p, t.quad(quad + 2))};
 }
 
 HWY_INLINE FVec affineRow(const float* m, const Vec3& p) {
@@ -132,10 +188,8 @@ HWY_INLINE FVec linearRow(const float* m, const Vec3& v) {
 
 template <bool kUniform>
 HWY_INLINE Vec3 worldTangent(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                             const Surface& s, const InstanceSetup& instance) {
-    Vec3 v{attribute(t, p, s.tangents, kTangentStride, 0),
-           attribute(t, p, s.tangents, kTangentStride, 1),
-           attribute(t, p, s.tangents, kTangentStride, 2)};
+                             const InstanceSetup& instance) {
+    Vec3 v = attribute3(t, p, kQuadTangent);
     if (!instance.identity) {
         const float* m = instance.world.data();
         v = {linearRow(m, v), linearRow(m + 4, v), linearRow(m + 8, v)};
@@ -146,10 +200,8 @@ HWY_INLINE Vec3 worldTangent(const LaneTriangles<kUniform>& t, const LaneBarycen
 /// Unit length, on the side that the mesh says is outside.
 template <bool kUniform>
 HWY_INLINE Vec3 worldNormal(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                            const Surface& s, const InstanceSetup& instance) {
-    Vec3 n{attribute(t, p, s.attributes, kAttributeStride, 0),
-           attribute(t, p, s.attributes, kAttributeStride, 1),
-           attribute(t, p, s.attributes, kAttributeStride, 2)};
+                            const InstanceSetup& instance) {
+    Vec3 n = attribute3(t, p, kQuadNormal);
     if (!instance.identity) {
         const float* m = instance.normal;
         n = {linearRow(m, n), linearRow(m + 3, n), linearRow(m + 6, n)};
@@ -159,9 +211,9 @@ HWY_INLINE Vec3 worldNormal(const LaneTriangles<kUniform>& t, const LaneBarycent
 
 /// Along +v, from the world's normal and tangent. A mirroring turns the frame's hand.
 template <bool kUniform>
-HWY_INLINE Vec3 worldBitangent(const LaneTriangles<kUniform>& t, const Surface& s,
-                               const InstanceSetup& instance, const Vec3& n, const Vec3& tangent) {
-    const FVec handedness = t.vertexField(s.tangents, kTangentStride, 3, 0);
+HWY_INLINE Vec3 worldBitangent(const LaneTriangles<kUniform>& t, const InstanceSetup& instance,
+                               const Vec3& n, const Vec3& tangent) {
+    const FVec handedness = t.quad(kQuadNormal).word[3];
     const Vec3 cross{hn::Sub(hn::Mul(n.y, tangent.z), hn::Mul(n.z, tangent.y)),
                      hn::Sub(hn::Mul(n.z, tangent.x), hn::Mul(n.x, tangent.z)),
                      hn::Sub(hn::Mul(n.x, tangent.y), hn::Mul(n.y, tangent.x))};
@@ -170,8 +222,8 @@ HWY_INLINE Vec3 worldBitangent(const LaneTriangles<kUniform>& t, const Surface& 
 
 template <bool kUniform>
 HWY_INLINE Vec3 worldPosition(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                              const Surface& s, const InstanceSetup& instance) {
-    const Vec3 position = objectPosition(t, p, s);
+                              const InstanceSetup& instance) {
+    const Vec3 position = attribute3(t, p, kQuadPosition);
     if (instance.identity) {
         return position;
     }
@@ -186,6 +238,7 @@ HWY_INLINE Vec3 towardsEye(const FrameView& view, const Vec3& position) {
                        hn::Sub(splat(view.eye.z), position.z)});
 }
 
+}  // namespace shading
 }  // namespace HWY_NAMESPACE
 }  // namespace still::internal
 HWY_AFTER_NAMESPACE();

@@ -84,17 +84,11 @@ TilePlanes planesAt(GBuffer& g, int x, int y) {
     return p;
 }
 
-/// In a tile in which nothing moved, motion is zero and the expected depth is the depth itself.
-/// Called when the tile is shaded; zeros that stand already are left.
+/// In a tile in which nothing moved motion is zero. Called when the tile is shaded; zeros that
+/// stand already are left.
 void writeStillMotion(const TilePlanes& planes, int width, int height, uint8_t& motion_is_zero) {
-    for (int y = 0; y < height; ++y) {
-        const ptrdiff_t at = y * planes.stride;
-        if (motion_is_zero == 0) {
-            std::fill_n(planes.motion + at, width, Motion{});
-        }
-        for (int x = 0; x < width; ++x) {
-            planes.depth_before[at + x] = logDepth16(planes.depth[at + x]);
-        }
+    for (int y = 0; y < height && motion_is_zero == 0; ++y) {
+        std::fill_n(planes.motion + y * planes.stride, width, Motion{});
     }
     motion_is_zero = 1;
 }

@@ -52,31 +52,12 @@ inline bool tileEdges(const SetupTriangle& t, const TileContext& tile, TileEdges
     return true;
 }
 
-HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangle, int x, int y) {
-    const Surface& s = tile.frame->surfaces[triangle.surface];
-    FVec alpha = splat(s.material->opacity);
-    if (s.alpha != nullptr) {
-        const LaneTriangles<true> t{&triangle};
-        const LaneBarycentrics p = barycentrics(t, hn::Iota(FTag(), float(x)), splat(float(y)));
-        LaneTexture c = textureCoordinates(t, p, s);
-        if (s.height != nullptr) {
-            c = displacedCoordinates(*tile.frame, t, p, s, c);
-        }
-        alpha = hn::Mul(alpha, sampleAlpha(*s.alpha, c, s.mip_bias_fx8));
-    }
-    if (s.material->alpha_mode == AlphaMode::test) {
-        return hn::Ge(alpha, splat(0.5f));
-    }
-    const UTag du;
-    const UVec px = hn::Iota(du, uint32_t(tile.x0 + x));
-    const uint32_t row = uint32_t(tile.y0 + y) * kHashY ^ uint32_t(triangle.surface) * kHashSurface;
-    UVec h = hn::Xor(hn::Mul(px, hn::Set(du, kHashX)), hn::Set(du, row));
-    h = hn::Xor(h, hn::ShiftRight<15>(h));
-    h = hn::Mul(h, hn::Set(du, kHashMix));
-    h = hn::Xor(h, hn::ShiftRight<12>(h));
-    h = hn::Add(h, hn::Set(du, tile.frame->view->sample * kGoldenRatio));
-    const FVec draw = hn::ConvertTo(FTag(), hn::BitCast(ITag(), hn::ShiftRight<16>(h)));
-    return hn::Lt(draw, hn::Mul(alpha, splat(65536.0f)));
+/// Which of the samples from (x, y) on the triangle has. Shading may work on more lanes than there
+/// are here.
+HWY_INLINE FMask alphaLanes(const TileContext& tile, const ShadeTriangle& triangle, int x, int y) {
+    uint8_t bits[8] = {};
+    hn::StoreMaskBits(shading::FTag(), shading::alphaMask(tile, triangle, x, y), bits);
+    return hn::LoadMaskBits(FTag(), bits);
 }
 
 /// Lower bounds of the depths in each block. Every triangle raises depths, so an old bound stays a
@@ -132,7 +113,7 @@ struct TriangleInTile {
         if constexpr (kTested) {
             prepareTriangle(tile, chunk, index);
             if (chunk.alpha) {
-                pass = hn::And(pass, alphaMask(tile, tile.shade[index], x, y));
+                pass = hn::And(pass, alphaLanes(tile, tile.shade[index], x, y));
                 if (hn::AllFalse(FTag(), pass)) {
                     return old;
                 }
@@ -146,7 +127,7 @@ struct TriangleInTile {
                    UTag(), visible);
         if constexpr (kTested) {
             if (tile.forward) {
-                shadeFragments(tile, index, x, y, now, pass);
+                shading::shadeFragments(tile, index, x, y, maskBits(hn::RebindMask(ITag(), pass)));
             }
         }
         return now;
@@ -384,7 +365,7 @@ void rasterizeTile(TileContext& tile) {
     BlockBounds bounds;
     clearTile(tile);
     if (tile.forward) {
-        shadeTileLevel<0>(tile);  // all background
+        shading::shadeTileLevel<0>(tile);  // all background
     }
     CoverBatch batch;
     const TileRun* run = tile.runs;

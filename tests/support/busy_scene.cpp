@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "rasterizer/texture_layout.h"
+
 namespace still::test {
 namespace {
 
@@ -11,7 +13,7 @@ std::vector<TextureLevel> chain(uint32_t width, uint32_t height, uint32_t& texel
     std::vector<TextureLevel> levels;
     texels = 0;
     for (;;) {
-        levels.push_back({width, height, texels});
+        levels.push_back({width, height, 0, 0});
         texels += width * height;
         if (width == 1 && height == 1) {
             return levels;
@@ -31,6 +33,7 @@ Texture noiseTexture(uint32_t width, uint32_t height, Wrap wrap, bool normals, R
         t.texels.push_back(channel(normals ? 300 : 0) | channel(normals ? 300 : 0) << 10 |
                            channel(normals ? 700 : 0) << 20);
     }
+    layOut(t);
     return t;
 }
 
@@ -39,10 +42,10 @@ AlphaTexture noiseAlpha(uint32_t width, uint32_t height, Wrap wrap, Random& rand
     t.wrap = wrap;
     uint32_t count = 0;
     t.levels = chain(width, height, count);
-    t.texels.resize(count + 4);
     for (uint32_t k = 0; k < count; ++k) {
-        t.texels[k] = uint8_t(random.integer(0, 255));
+        t.texels.push_back(uint8_t(random.integer(0, 255)));
     }
+    layOut(t);
     return t;
 }
 
@@ -173,6 +176,7 @@ Texture levelTexture(uint32_t size, const std::vector<std::array<uint32_t, 3>>& 
         t.texels.insert(t.texels.end(), size_t(t.levels[level].width) * t.levels[level].height,
                         c[0] | c[1] << 10 | c[2] << 20);
     }
+    layOut(t);
     return t;
 }
 
@@ -180,7 +184,8 @@ AlphaTexture constantAlpha(uint32_t size, uint8_t value) {
     AlphaTexture t;
     uint32_t count = 0;
     t.levels = chain(size, size, count);
-    t.texels.assign(count + 4, value);
+    t.texels.assign(count, value);
+    layOut(t);
     return t;
 }
 

@@ -3,6 +3,7 @@
 #include "engine/frame_loop.h"
 #include "engine/shapes.h"
 #include "engine/timeline.h"
+#include "rasterizer/texture_layout.h"
 
 using namespace still;
 
@@ -11,8 +12,9 @@ namespace {
 Texture greyTexture(Wrap wrap) {
     Texture texture;
     texture.wrap = wrap;
-    texture.levels = {{1, 1, 0}};
+    texture.levels = {{1, 1, 0, 0}};
     texture.texels = {511};
+    layOut(texture);
     return texture;
 }
 

@@ -356,6 +356,7 @@ TEST_CASE("model cache: numbers that would lead the rasterizer astray are no mod
     CHECK(broken([](ObjModel& m) { m.textures[0].levels.clear(); }));
     CHECK(broken([](ObjModel& m) { m.textures[0].levels[0].width = 6; }));
     CHECK(broken([](ObjModel& m) { m.textures[0].levels[2].offset = 18; }));
+    CHECK(broken([](ObjModel& m) { --m.textures[0].levels[1].stride; }));
     CHECK(broken([](ObjModel& m) { m.textures[0].wrap = Wrap{2}; }));
     CHECK(broken([](ObjModel& m) { m.alpha_textures[0].texels.pop_back(); }));
 }

@@ -8,6 +8,7 @@
 #include "engine/internal/mtl_textures.h"
 #include "engine/internal/obj_text.h"
 #include "tests/support/data_path.h"
+#include "tests/support/texels.h"
 
 using namespace still;
 
@@ -137,9 +138,10 @@ TEST_CASE("materials: alpha comes from map_d, else from map_Kd, else from nowher
                                   "newmtl h\nmap_Kd rgba.tga\nmap_d missing.tga\n");
     const auto alpha = [&](size_t m) {
         const int32_t number = set.materials[m].alpha_texture;
-        return number == kNoTexture ? Pixel{-1, -1}
-                                    : Pixel{set.alpha_textures[size_t(number)].texels[0],
-                                            set.alpha_textures[size_t(number)].texels[1]};
+        return number == kNoTexture
+                   ? Pixel{-1, -1}
+                   : Pixel{test::texelAt(set.alpha_textures[size_t(number)], 0, 0, 0),
+                           test::texelAt(set.alpha_textures[size_t(number)], 0, 1, 0)};
     };
     CHECK(alpha(0) == Pixel{255, 0});
     CHECK(set.materials[0].alpha_mode == AlphaMode::test);
@@ -168,8 +170,8 @@ TEST_CASE("materials: a grey bump map is a height, a coloured one a normal map",
               "newmtl a\nbump grey.tga\nnewmtl b\nbump blue.tga\n"
               "newmtl c\nnorm grey.tga\nbump blue.tga\n"
               "newmtl d\nbump -bm 3 grey.tga\nnewmtl e\nbump -clamp on grey.tga");
-    const auto texel = [&](size_t m, size_t i) {
-        return set.textures.at(size_t(set.materials[m].normal_texture)).texels[i];
+    const auto texel = [&](size_t m, uint32_t x) {
+        return test::texelAt(set.textures.at(size_t(set.materials[m].normal_texture)), 0, x, 0);
     };
     CHECK(texel(0, 0) == (512u | 512u << 10 | 1023u << 20));
     CHECK((texel(1, 1) & 1023) == 1023);

@@ -7,8 +7,11 @@
 #include <vector>
 
 #include "engine/texture.h"
+#include "rasterizer/texture_layout.h"
+#include "tests/support/texels.h"
 
 using namespace still;
+using namespace still::test;
 
 namespace {
 
@@ -106,17 +109,18 @@ int wrongTexels(const Texture& texture, int c, const std::vector<Grid>& grids,
     for (size_t k = 0; k < std::min(texture.levels.size(), grids.size()); ++k) {
         const TextureLevel& level = texture.levels[k];
         wrong += int(level.width) != grids[k].width || int(level.height) != grids[k].height;
+        const std::vector<uint32_t> texels = texelsOf(texture, k);
         for (size_t i = 0; i < grids[k].v.size(); ++i) {
-            wrong += !roundsTo(encode(grids[k].v[i]), channel(texture.texels[level.offset + i], c));
+            wrong += !roundsTo(encode(grids[k].v[i]), channel(texels.at(i), c));
         }
     }
     return wrong;
 }
 
-size_t covered(const AlphaTexture& texture, const TextureLevel& level) {
-    const auto begin = texture.texels.begin() + level.offset;
-    return size_t(std::count_if(begin, begin + level.width * level.height,
-                                [](uint8_t a) { return a >= 128; }));
+size_t covered(const AlphaTexture& texture, size_t level, int threshold = 128) {
+    const std::vector<uint8_t> texels = texelsOf(texture, level);
+    return size_t(std::count_if(texels.begin(), texels.end(),
+                                [threshold](uint8_t a) { return a >= threshold; }));
 }
 
 }  // namespace
@@ -135,7 +139,6 @@ TEST_CASE("texture: mips average colours by area in linear light", "[unit][engin
                           encode) == 0);
         const TextureLevel& last = texture.levels.back();
         CHECK(last.width * last.height == 1);
-        CHECK(texture.texels.size() == last.offset + 1);
     }
 }
 
@@ -143,12 +146,14 @@ TEST_CASE("texture: a plain colour stays the same in every level", "[unit][engin
     for (const int c : {0, 1, 12, 128, 254, 255}) {
         const Image<Rgba8> image = plainImage({97, 61}, {uint8_t(c), uint8_t(c), uint8_t(c), 255});
         const Texture texture = makeColourTexture(image.view(), Wrap::repeat);
-        const auto other = std::find_if(texture.texels.begin(), texture.texels.end(),
-                                        [&](uint32_t t) { return t != texture.texels[0]; });
-        CHECK(other == texture.texels.end());
+        for (size_t level = 0; level < texture.levels.size(); ++level) {
+            const std::vector<uint32_t> texels = texelsOf(texture, level);
+            CHECK(std::count(texels.begin(), texels.end(), texelAt(texture, 0, 0, 0)) ==
+                  ptrdiff_t(texels.size()));
+        }
     }
     const Image<Rgba8> white = plainImage({1, 1}, {255, 255, 255, 0});
-    CHECK(makeColourTexture(white.view(), Wrap::clamp).texels[0] == 0x3FFFFFFFu);
+    CHECK(texelAt(makeColourTexture(white.view(), Wrap::clamp), 0, 0, 0) == 0x3FFFFFFFu);
 }
 
 TEST_CASE("texture: mips of normal maps average the vectors", "[unit][engine]") {
@@ -165,7 +170,7 @@ TEST_CASE("texture: mips of normal maps average the vectors", "[unit][engine]") 
 TEST_CASE("texture: heights lean the normal away from where it gets brighter", "[unit][engine]") {
     const Image<Rgba8> flat = plainImage({5, 3}, {90, 90, 90, 255});
     for (const uint32_t texel :
-         makeNormalTextureFromHeight(flat.view(), Wrap::repeat, 1.0f).texels) {
+         texelsOf(makeNormalTextureFromHeight(flat.view(), Wrap::repeat, 1.0f), 0)) {
         CHECK(channel(texel, 0) == 512);
         CHECK(channel(texel, 1) == 512);
         CHECK(channel(texel, 2) == 1023);
@@ -177,7 +182,7 @@ TEST_CASE("texture: heights lean the normal away from where it gets brighter", "
             ramp.at(x, y) = {h, h, h, 255};
         }
     }
-    const auto at = [](const Texture& t, int x, int y) { return t.texels[size_t(y * 8 + x)]; };
+    const auto at = [](const Texture& t, uint32_t x, uint32_t y) { return texelAt(t, 0, x, y); };
     const Texture once = makeNormalTextureFromHeight(constView(ramp), Wrap::clamp, 1.0f);
     const double dx = 20 / 255.0, dy = 10 / 255.0, length = std::sqrt(dx * dx + dy * dy + 1);
     CHECK(channel(at(once, 4, 4), 0) == uint32_t((1 - dx / length) / 2 * 1023 + 0.5));
@@ -190,19 +195,19 @@ TEST_CASE("texture: heights lean the normal away from where it gets brighter", "
     CHECK(channel(at(repeated, 7, 4), 0) > 512);
 }
 
-TEST_CASE("texture: plain alpha is averaged by area and has spare bytes", "[unit][engine]") {
+TEST_CASE("texture: plain alpha is averaged by area", "[unit][engine]") {
     for (const Size& size : kSizes) {
         const Image<Rgba8> image = randomImage(size, 5);
         const AlphaTexture texture = makeAlphaTexture(image.view(), Wrap::repeat, false);
         const std::vector<Grid> grids = mipGrids(image, [](auto& p) { return (long double)p.a; });
         int wrong = 0;
         for (size_t k = 0; k < grids.size(); ++k) {
+            const std::vector<uint8_t> texels = texelsOf(texture, k);
             for (size_t i = 0; i < grids[k].v.size(); ++i) {
-                wrong += !roundsTo(grids[k].v[i], texture.texels[texture.levels[k].offset + i]);
+                wrong += !roundsTo(grids[k].v[i], texels.at(i));
             }
         }
         CHECK(wrong == 0);
-        CHECK(texture.texels.size() == texture.levels.back().offset + 1 + 4);
     }
 }
 
@@ -218,18 +223,15 @@ TEST_CASE("texture: alpha-tested mips keep the coverage as well as any scale can
             }
             const AlphaTexture kept = makeAlphaTexture(constView(image), Wrap::repeat, true);
             const AlphaTexture plain = makeAlphaTexture(constView(image), Wrap::repeat, false);
-            const double share = double(covered(kept, kept.levels[0])) / (size.first * size.second);
+            const double share = double(covered(kept, 0)) / (size.first * size.second);
             for (size_t k = 1; k < kept.levels.size(); ++k) {
                 const TextureLevel& level = kept.levels[k];
                 const double wanted = share * level.width * level.height;
                 double best = 1e9;
                 for (int t = 1; t <= 256; ++t) {
-                    const auto begin = plain.texels.begin() + level.offset;
-                    const auto n = std::count_if(begin, begin + level.width * level.height,
-                                                 [t](uint8_t a) { return a >= t; });
-                    best = std::min(best, std::abs(double(n) - wanted));
+                    best = std::min(best, std::abs(double(covered(plain, k, t)) - wanted));
                 }
-                CHECK(std::abs(double(covered(kept, level)) - wanted) == best);
+                CHECK(std::abs(double(covered(kept, k)) - wanted) == best);
             }
         }
     }
@@ -244,14 +246,13 @@ TEST_CASE("texture: a thin fence does not vanish in its mips", "[unit][engine]")
         }
     }
     const AlphaTexture texture = makeAlphaTexture(constView(fence), Wrap::repeat, true);
-    const double share = covered(texture, texture.levels[0]) / 65536.0;
+    const double share = double(covered(texture, 0)) / 65536;
     CHECK(texture.levels.size() >= 2);
     CHECK(texture.levels.size() < 9);  // ended before the wires were lost
-    CHECK(texture.texels.size() == texture.levels.back().offset +
-                                       texture.levels.back().width * texture.levels.back().height +
-                                       4);
-    for (const TextureLevel& level : texture.levels) {
-        CHECK(double(covered(texture, level)) / (level.width * level.height) ==
+    CHECK(texture.texels.size() == texelCount(texture.levels));
+    for (size_t k = 0; k < texture.levels.size(); ++k) {
+        const TextureLevel& level = texture.levels[k];
+        CHECK(double(covered(texture, k)) / (level.width * level.height) ==
               Approx(share).margin(0.05));
     }
 }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "rasterizer/fixed.h"
+#include "rasterizer/texture_layout.h"
 #include "tests/support/oracle_rasterizer.h"
 #include "tests/support/random_triangles.h"
 
@@ -169,8 +170,8 @@ Texture gradientTexture() {
     constexpr uint32_t kSize = 256;
     Texture t;
     t.wrap = Wrap::clamp;
-    for (uint32_t size = kSize, offset = 0; size > 0; offset += size * size, size /= 2) {
-        t.levels.push_back({size, size, offset});
+    for (uint32_t size = kSize; size > 0; size /= 2) {
+        t.levels.push_back({size, size, 0, 0});
         for (uint32_t y = 0; y < size; ++y) {
             for (uint32_t x = 0; x < size; ++x) {
                 const auto encode = [&](uint32_t k) {
@@ -180,6 +181,7 @@ Texture gradientTexture() {
             }
         }
     }
+    layOut(t);
     return t;
 }
 

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "rasterizer/texture_layout.h"
 #include "tests/support/busy_scene.h"
 #include "tests/support/plane_compare.h"
 
@@ -28,20 +29,21 @@ TestScene screen(const FrameView& view, float u, float v, uint32_t material = 0)
 /// 8 × 8 texels, all different; the chain has one level only.
 Texture numberedTexels() {
     Texture t;
-    t.levels = {{8, 8, 0}};
+    t.levels = {{8, 8, 0, 0}};
     for (uint32_t k = 0; k < 64; ++k) {
         t.texels.push_back(k * 16 | (k * 7 % 64 * 16) << 10 | (k * 29 % 64 * 16) << 20);
     }
+    layOut(t);
     return t;
 }
 
 AlphaTexture numberedAlpha() {
     AlphaTexture t;
-    t.levels = {{8, 8, 0}};
+    t.levels = {{8, 8, 0, 0}};
     for (uint32_t k = 0; k < 64; ++k) {
         t.texels.push_back(uint8_t(k * 37 % 64 * 4));
     }
-    t.texels.resize(64 + 4);
+    layOut(t);
     return t;
 }
 

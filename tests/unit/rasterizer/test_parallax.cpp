@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rasterizer/fixed.h"
+#include "rasterizer/texture_layout.h"
 #include "tests/support/busy_scene.h"
 #include "tests/support/plane_compare.h"
 
@@ -27,13 +28,14 @@ FrameView slantedView() {
 Texture ramps() {
     Texture t;
     t.wrap = Wrap::clamp;
-    t.levels = {{kTexels, kTexels, 0}};
+    t.levels = {{kTexels, kTexels, 0, 0}};
     for (uint32_t y = 0; y < kTexels; ++y) {
         for (uint32_t x = 0; x < kTexels; ++x) {
             const auto code = [](double share) { return uint32_t(std::sqrt(share) * 1023 + 0.5); };
             t.texels.push_back(code((x + 0.5) / kTexels) | code(1 - (y + 0.5) / kTexels) << 10);
         }
     }
+    layOut(t);
     return t;
 }
 
@@ -41,11 +43,11 @@ Texture ramps() {
 template <class Height>
 AlphaTexture ridges(Height&& height) {
     AlphaTexture t;
-    t.levels = {{256, 1, 0}};
+    t.levels = {{256, 1, 0, 0}};
     for (int x = 0; x < 256; ++x) {
         t.texels.push_back(uint8_t(std::lround(height((x + 0.5) / 256) * 255)));
     }
-    t.texels.resize(256 + 4);
+    layOut(t);
     return t;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rasterizer/fixed.h"
+#include "rasterizer/texture_layout.h"
 #include "tests/support/busy_scene.h"
 
 using namespace still;
@@ -127,8 +128,9 @@ TEST_CASE("texture: bilinear filtering is exact at and between texel centres", "
     TestScene scene;
     Texture t;
     t.wrap = Wrap::repeat;
-    t.levels = {{2, 1, 0}, {1, 1, 2}};
+    t.levels = {{2, 1, 0, 0}, {1, 1, 0, 0}};
     t.texels = {0, 1023, 511};
+    layOut(t);
     scene.textures = {t};
     scene.materials = {textured()};
     addScreen(scene, view, 0.5, 1, 0);
@@ -147,8 +149,9 @@ TEST_CASE("texture: clamp holds the border, repeat does not", "[texture]") {
         TestScene scene;
         Texture t;
         t.wrap = wrap;
-        t.levels = {{2, 1, 0}, {1, 1, 2}};
+        t.levels = {{2, 1, 0, 0}, {1, 1, 0, 0}};
         t.texels = {0, 1023, 511};
+        layOut(t);
         scene.textures = {t};
         scene.materials = {textured()};
         addScreen(scene, view, 0.5, 2, 0);
@@ -163,8 +166,9 @@ TEST_CASE("texture: v grows upwards, row 0 is the top", "[texture]") {
     TestScene scene;
     Texture t;
     t.wrap = Wrap::clamp;
-    t.levels = {{1, 2, 0}, {1, 1, 2}};
+    t.levels = {{1, 2, 0, 0}, {1, 1, 0, 0}};
     t.texels = {1023, 0, 511};
+    layOut(t);
     scene.textures = {t};
     scene.materials = {textured()};
     addScreen(scene, view, 0.5, 1, 0);
@@ -179,8 +183,9 @@ TEST_CASE("alpha test: samples exist where alpha reaches one half", "[alpha]") {
     TestScene scene;
     AlphaTexture alpha;
     alpha.wrap = Wrap::clamp;
-    alpha.levels = {{2, 1, 0}, {1, 1, 2}};
-    alpha.texels = {0, 255, 127, 0, 0, 0, 0};
+    alpha.levels = {{2, 1, 0, 0}, {1, 1, 0, 0}};
+    alpha.texels = {0, 255, 127};
+    layOut(alpha);
     scene.alpha_textures = {alpha};
     Material holes;
     holes.alpha_mode = AlphaMode::test;
