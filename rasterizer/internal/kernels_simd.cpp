@@ -28,6 +28,7 @@
 #include "rasterizer/internal/sampler-inl.h"
 #include "rasterizer/internal/parallax-inl.h"
 #include "rasterizer/internal/alpha-inl.h"
+#include "rasterizer/internal/light-inl.h"
 #include "rasterizer/internal/shade-inl.h"
 #include "rasterizer/internal/cover-inl.h"
 #include "rasterizer/internal/visibility-inl.h"

@@ -30,104 +30,6 @@ struct Group {
     ptrdiff_t at;  ///< of the first lane in the planes
 };
 
-HWY_INLINE Vec3 bumped(const Vec3& n, const Vec3& t, const Vec3& b, const Vec3& raw) {
-    const FVec one = splat(1.0f);
-    const FVec x = hn::Sub(raw.x, one), y = hn::Sub(raw.y, one), z = hn::Sub(raw.z, one);
-    const auto combine = [&](FVec tc, FVec bc, FVec nc) {
-        return hn::Add(hn::Add(hn::Mul(tc, x), hn::Mul(bc, y)), hn::Mul(nc, z));
-    };
-    return normalize3({combine(t.x, b.x, n.x), combine(t.y, b.y, n.y), combine(t.z, b.z, n.z)});
-}
-
-template <bool kFull, bool kUniform>
-HWY_INLINE Vec3 shadingNormal(const LaneTriangles<kUniform>& t, const LaneBarycentrics& p,
-                              const Surface& s, const InstanceSetup& instance, const LaneTexture& c,
-                              const LaneSample& of_colour) {
-    Vec3 n = worldNormal(t, p, instance);
-    if constexpr (kFull) {
-        if (s.normal != nullptr) {
-            const Vec3 tangent = worldTangent(t, p, instance);
-            const Vec3 bitangent = worldBitangent(t, instance, n, tangent);
-            LaneSample own;
-            if (!s.normal_like_colour) {
-                findTexels(*s.normal, c, s.mip_bias_fx8, own);
-            }
-            n = bumped(n, tangent, bitangent,
-                       sampleTexture<false>(*s.normal, s.normal_like_colour ? of_colour : own,
-                                            kTexelToNormal));
-        }
-    }
-    return scale3(n, p.flip);
-}
-
-struct LaneLight {
-    Vec3 diffuse, specular;
-};
-
-HWY_INLINE FVec power(FVec x, int n) {
-    FVec result = splat(1.0f);
-    for (; n > 0; n >>= 1) {
-        if ((n & 1) != 0) {
-            result = hn::Mul(result, x);
-        }
-        x = hn::Mul(x, x);
-    }
-    return result;
-}
-
-HWY_INLINE Vec3 addScaled(const Vec3& sum, const std::array<float, 3>& colour, FVec factor) {
-    return {hn::Add(sum.x, hn::Mul(splat(colour[0]), factor)),
-            hn::Add(sum.y, hn::Mul(splat(colour[1]), factor)),
-            hn::Add(sum.z, hn::Mul(splat(colour[2]), factor))};
-}
-
-HWY_INLINE void addLight(LaneLight& lit, const Vec3& to_light, const std::array<float, 3>& colour,
-                         FVec attenuation, const Vec3& n, const Vec3& to_eye, int shininess) {
-    const FVec zero = hn::Zero(FTag());
-    const FVec cosine = hn::Mul(hn::Max(dot3(n, to_light), zero), attenuation);
-    lit.diffuse = addScaled(lit.diffuse, colour, cosine);
-    if (shininess > 0) {
-        const Vec3 half = normalize3({hn::Add(to_light.x, to_eye.x), hn::Add(to_light.y, to_eye.y),
-                                      hn::Add(to_light.z, to_eye.z)});
-        const FVec highlight = hn::Mul(power(hn::Max(dot3(n, half), zero), shininess), attenuation);
-        lit.specular =
-            addScaled(lit.specular, colour, hn::IfThenElseZero(hn::Gt(cosine, zero), highlight));
-    }
-}
-
-template <bool kFull, bool kUniform>
-HWY_INLINE LaneLight lightSurface(const TileContext& tile, const LaneTriangles<kUniform>& t,
-                                  const LaneBarycentrics& p, const Surface& s,
-                                  const InstanceSetup& instance, const Vec3& n) {
-    const Lighting& lighting = tile.frame->list->lighting;
-    const FVec zero = hn::Zero(FTag());
-    LaneLight lit{
-        {splat(lighting.ambient[0]), splat(lighting.ambient[1]), splat(lighting.ambient[2])},
-        {zero, zero, zero}};
-    Vec3 position{zero, zero, zero}, to_eye{zero, zero, zero};
-    if (kFull && (s.features & kShadePosition) != 0) {
-        position = worldPosition(t, p, instance);
-    }
-    const std::array<float, 3>& d = lighting.sun.direction;
-    const int shininess = kFull ? s.shininess : 0;
-    if (shininess > 0) {
-        to_eye = towardsEye(*tile.frame->view, position);
-    }
-    addLight(lit, {splat(-d[0]), splat(-d[1]), splat(-d[2])}, lighting.sun.colour, splat(1.0f), n,
-             to_eye, shininess);
-    if constexpr (kFull) {
-        for (const PointLight& light : lighting.points) {
-            const Vec3 to{hn::Sub(splat(light.position[0]), position.x),
-                          hn::Sub(splat(light.position[1]), position.y),
-                          hn::Sub(splat(light.position[2]), position.z)};
-            const FVec d2 = hn::Max(dot3(to, to), splat(1e-12f));
-            const Vec3 direction = scale3(to, hn::Div(splat(1.0f), hn::Sqrt(d2)));
-            addLight(lit, direction, light.colour, hn::Div(splat(1.0f), d2), n, to_eye, shininess);
-        }
-    }
-    return lit;
-}
-
 HWY_INLINE IVec toFx12(FVec linear) {
     const FVec bounded = hn::Min(hn::Max(linear, hn::Zero(FTag())), splat(kColourMax));
     return roundSmall(hn::Mul(bounded, splat(kColourScale)));
@@ -417,9 +319,25 @@ struct PixelQueues {
     }
 };
 
+/// Of the triangles `refs`, which all have records.
+HWY_INLINE IVec surfacesOf(const TileContext& tile, IVec refs) {
+    alignas(64) int32_t first_word[hn::MaxLanes(ITag())];
+    hn::Store(hn::ShiftLeft<6>(refs), ITag(), first_word);
+    constexpr int kWord = offsetof(ShadeTriangle, surface) / sizeof(float);
+    static_assert(kWord % 4 == 3);
+    const float* words = reinterpret_cast<const float*>(tile.shade) + (kWord - 3);
+    return hn::BitCast(ITag(), loadQuads(words, first_word).word[3]);
+}
+
+/// The first of the lanes in `mask`, of which there is one.
+HWY_INLINE int32_t firstLane(IVec v, hn::Mask<ITag> mask) {
+    alignas(64) int32_t lanes[hn::MaxLanes(ITag())];
+    hn::Store(v, ITag(), lanes);
+    return lanes[hn::FindFirstTrue(ITag(), mask)];
+}
+
 template <int kLevel>
 HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, PixelQueues& queues) {
-    constexpr size_t kLanes = hn::MaxLanes(ITag());
     const ITag d;
     const TileContext& tile = *group.tile;
     const IVec refs = hn::LoadU(d, reinterpret_cast<const int32_t*>(visible));
@@ -432,40 +350,33 @@ HWY_INLINE void shadeGroup(const Group& group, const uint32_t* visible, PixelQue
         }
         return;
     }
-    alignas(64) int32_t surface_of[kLanes];
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-        const uint32_t ref = visible[lane];
-        surface_of[lane] = ref == kNothingVisible ? 0 : tile.shade[ref].surface;
-    }
-    const IVec surfaces = hn::Load(d, surface_of);
-    if (surface_of[0] != 0 && hn::AllTrue(d, hn::Eq(surfaces, splatInt(surface_of[0])))) {
+    const auto shown = hn::Ne(refs, splatInt(int32_t(kNothingVisible)));
+    const IVec surfaces = hn::IfThenElseZero(
+        shown, surfacesOf(tile, hn::IfThenElse(shown, refs, splatInt(firstLane(refs, shown)))));
+    const int32_t first_surface = hn::GetLane(surfaces);
+    if (first_surface != 0 && hn::AllTrue(d, hn::Eq(surfaces, splatInt(first_surface)))) {
         const GroupOutput out =
-            shadeMixed<kLevel>(tile, group.x, group.y, refs, uint32_t(surface_of[0]));
+            shadeMixed<kLevel>(tile, group.x, group.y, refs, uint32_t(first_surface));
         storePlanes(tile.planes, group.at, out);
         if (out.own_motion) {
             storeMotion(tile.planes, group.at, out.motion);
         }
         return;
     }
-    if (!hn::AllFalse(d, hn::Eq(surfaces, hn::Zero(d)))) {
+    if (!hn::AllTrue(d, shown)) {
         storeBackground(group);
     }
     const IVec pixels = hn::Iota(d, int32_t(visible - tile.visible));
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-        const int32_t surface = surface_of[lane];
-        if (surface == 0) {
-            continue;
-        }
-        PixelQueue& queue = queues.of<kLevel>(tile, surface);
+    for (auto left = shown; !hn::AllFalse(d, left);) {
+        const int32_t surface = firstLane(surfaces, left);
         const auto mask = hn::Eq(surfaces, splatInt(surface));
+        PixelQueue& queue = queues.of<kLevel>(tile, surface);
         hn::CompressStore(pixels, mask, d, queue.pixel + queue.count);
         queue.count += int(hn::CompressStore(refs, mask, d, queue.ref + queue.count));
-        if (queue.count >= int(kLanes)) {
+        if (queue.count >= int(hn::MaxLanes(d))) {
             shadeQueued<kLevel>(tile, queue);
         }
-        for (size_t other = lane; other < kLanes; ++other) {
-            surface_of[other] = surface_of[other] == surface ? 0 : surface_of[other];
-        }
+        left = hn::AndNot(mask, left);
     }
 }
 

@@ -176,7 +176,7 @@ void GpuScene::upload(const Texture& texture) {
         texels.reserve(size_t{level.width} * level.height * 4);
         for (uint32_t y = level.height; y-- > 0;) {
             for (uint32_t x = 0; x < level.width; ++x) {
-                const uint32_t texel = texture.texels[level.offset + y * level.width + x];
+                const uint32_t texel = texture.texels[level.offset + y * level.stride + x];
                 texels.insert(texels.end(), {eightBits(texel, 0), eightBits(texel, 10),
                                              eightBits(texel, 20), uint8_t{255}});
             }
@@ -193,7 +193,7 @@ void GpuScene::upload(const AlphaTexture& texture) {
         std::vector<uint8_t> texels;
         texels.reserve(size_t{level.width} * level.height);
         for (uint32_t y = level.height; y-- > 0;) {
-            const uint8_t* row = texture.texels.data() + level.offset + y * level.width;
+            const uint8_t* row = texture.texels.data() + level.offset + y * level.stride;
             texels.insert(texels.end(), row, row + level.width);
         }
         gl_->glTexSubImage2D(GL_TEXTURE_2D, GLint(i), 0, 0, GLsizei(level.width),
