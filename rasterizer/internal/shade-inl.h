@@ -292,7 +292,7 @@ HWY_NOINLINE void shadeQueued(const TileContext& tile, PixelQueue& queue) {
             planes.normal[at] = uint32_t(value[4][lane]);
         }
         if (out.own_motion) {
-            std::memcpy(planes.motion + at, &value[5][lane], sizeof(Motion));
+            planes.motion[at] = {int16_t(value[5][lane]), int16_t(value[5][lane] >> 16)};
             planes.depth_before[at] = uint16_t(value[6][lane]);
         }
     }
