@@ -61,11 +61,19 @@ ColourPlanes planesOf(const GBuffer& gbuffer) {
 
 struct FrameLoop::State {
     State(const Scene& scene_in, const FrameSettings& settings_in, Workers& workers_in)
-        : scene(scene_in), settings(settings_in), workers(workers_in), table(settings.tone_map) {}
+        : scene(scene_in), settings(settings_in), workers(workers_in), table(settings.tone_map) {
+        windings.resize(scene.meshes.size());
+        workers.parallelFor(int(windings.size()), 1, [&](int begin, int end, int) {
+            for (int i = begin; i < end; ++i) {
+                windings[size_t(i)] = windingBits(scene.meshes[size_t(i)]);
+            }
+        });
+    }
 
     const Scene& scene;
     FrameSettings settings;
     Workers& workers;
+    std::vector<WindingBits> windings;  ///< of the meshes
     Rasterizer rasterizer;
     Taa taa;                ///< Method::gather
     Laboratory laboratory;  ///< Method::recursive
@@ -164,6 +172,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                         .textures = scene.textures,
                         .alpha_textures = scene.alpha_textures,
                         .instances = frame.instances,
+                        .windings = windings,
                         .lighting = frame.lighting,
                         .background = scene.background};
     const FrameView view{.width = settings.width,

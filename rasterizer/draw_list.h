@@ -140,6 +140,11 @@ struct Lighting {
     std::vector<PointLight> points;
 };
 
+/// Of each triangle of a mesh one bit, bit t % 32 of word t / 32: its winding agrees with its
+/// vertex normals, so that it is counter-clockwise seen from outside.
+using WindingBits = std::vector<uint32_t>;
+WindingBits windingBits(const Mesh& mesh);
+
 /// Everything that is drawn this frame. The spans must stay valid until the frame is rasterized.
 /// Submission order is instance order, then triangle order; at equal depth the first one stays.
 struct DrawList {
@@ -148,6 +153,8 @@ struct DrawList {
     std::span<const Texture> textures;
     std::span<const AlphaTexture> alpha_textures;
     std::span<const Instance> instances;
+    /// windingBits() of each mesh, or empty: then they are found out for what is visible.
+    std::span<const WindingBits> windings;
     Lighting lighting;
     std::array<float, 3> background{};  ///< linear light
 };

@@ -7,13 +7,14 @@ namespace HWY_NAMESPACE {
 namespace shading {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Which pixels of row y from x have a sample of the triangle.
-HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangle, int x, int y) {
+/// Which of the tile's pixels (x, y) have a sample of the triangle.
+HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangle, IVec x, IVec y) {
     const Surface& s = tile.frame->surfaces[triangle.surface];
     FVec alpha = splat(s.material->opacity);
     if (s.alpha != nullptr) {
         const LaneTriangles<true> t{&triangle};
-        const LaneBarycentrics p = barycentrics(t, hn::Iota(FTag(), float(x)), splat(float(y)));
+        const LaneBarycentrics p =
+            barycentrics(t, hn::ConvertTo(FTag(), x), hn::ConvertTo(FTag(), y));
         LaneTexture c = textureCoordinates(t, p, s);
         if (s.height != nullptr) {
             c = displacedCoordinates(*tile.frame, t, p, s, c);
@@ -24,9 +25,10 @@ HWY_INLINE FMask alphaMask(const TileContext& tile, const ShadeTriangle& triangl
         return hn::Ge(alpha, splat(0.5f));
     }
     const UTag du;
-    const UVec px = hn::Iota(du, uint32_t(tile.x0 + x));
-    const uint32_t row = uint32_t(tile.y0 + y) * kHashY ^ uint32_t(triangle.surface) * kHashSurface;
-    UVec h = hn::Xor(hn::Mul(px, hn::Set(du, kHashX)), hn::Set(du, row));
+    const UVec px = hn::BitCast(du, hn::Add(x, splatInt(tile.x0)));
+    const UVec py = hn::BitCast(du, hn::Add(y, splatInt(tile.y0)));
+    UVec h = hn::Xor(hn::Xor(hn::Mul(px, hn::Set(du, kHashX)), hn::Mul(py, hn::Set(du, kHashY))),
+                     hn::Set(du, uint32_t(triangle.surface) * kHashSurface));
     h = hn::Xor(h, hn::ShiftRight<15>(h));
     h = hn::Mul(h, hn::Set(du, kHashMix));
     h = hn::Xor(h, hn::ShiftRight<12>(h));

@@ -26,7 +26,7 @@ HWY_INLINE IVec splatInt(int32_t v) {
 
 #if HWY_TARGET != HWY_SCALAR  // which has no blocks of lanes
 
-using BTag = hn::CappedTag<int32_t, kTileSlack>;  ///< a batch
+using BTag = hn::CappedTag<int32_t, kMaxBatch>;  ///< a batch
 using BFTag = hn::RebindToFloat<BTag>;
 using BHalf = hn::Half<BTag>;
 using BDTag = hn::Rebind<double, BHalf>;  ///< half a batch
@@ -109,9 +109,10 @@ HWY_INLINE void storeTransposed(BVec v[4], const At& at) {
     }
 }
 
-HWY_INLINE uint32_t laneBits(hn::Mask<BTag> mask) {
+template <class D>
+HWY_INLINE uint32_t maskBits(D d, hn::Mask<D> mask) {
     uint8_t bits[8] = {};
-    hn::StoreMaskBits(BTag(), mask, bits);
+    hn::StoreMaskBits(d, mask, bits);
     return uint32_t(bits[0]) | uint32_t(bits[1]) << 8;
 }
 
@@ -219,13 +220,14 @@ HWY_INLINE void setUpBatch(const TileContext& tile, const TileTriangle* triangle
 
     const BVec extent = hn::Max(hn::Sub(x1, x0), hn::Sub(y1, y0));
     const uint32_t valid = uint32_t((1u << count) - 1u);
-    out.wide = laneBits(hn::Ne(hn::And(word[7], hn::Set(d, int32_t{kWide})), hn::Zero(d))) & valid;
-    out.small = laneBits(hn::Lt(extent, hn::Set(d, kSmallSize))) & valid & ~out.wide;
+    out.wide =
+        maskBits(d, hn::Ne(hn::And(word[7], hn::Set(d, int32_t{kWide})), hn::Zero(d))) & valid;
+    out.small = maskBits(d, hn::Lt(extent, hn::Set(d, kSmallSize))) & valid & ~out.wide;
     out.alive = valid;
     if (out.small != 0) {
         const BVec samples = coverSmall(c, a, b);
         hn::Store(samples, d, out.samples);
-        out.alive &= ~(out.small & laneBits(hn::Eq(samples, hn::Zero(d))));
+        out.alive &= ~(out.small & maskBits(d, hn::Eq(samples, hn::Zero(d))));
     }
     if ((out.alive & ~out.wide) == 0) {
         return;

@@ -21,6 +21,7 @@ Surface makeSurface(const DrawList& list, const Instance& instance, uint32_t ins
     s.y = mesh.y.data();
     s.z = mesh.z.data();
     s.indices = mesh.indices.data();
+    s.windings = list.windings.empty() ? nullptr : list.windings[instance.mesh].data();
     s.material = &material;
     s.instance = instance_index;
     if (material.colour_texture != kNoTexture) {

@@ -64,6 +64,7 @@ struct Surface {
     const float* tangents = nullptr;    ///< VertexTangent as floats, stride kTangentStride
     const float *x = nullptr, *y = nullptr, *z = nullptr;
     const uint32_t* indices = nullptr;
+    const uint32_t* windings = nullptr;  ///< WindingBits of the mesh, or null
     const Material* material = nullptr;
     const Texture* colour = nullptr;
     const Texture* normal = nullptr;
@@ -104,8 +105,10 @@ constexpr int kBlockSize = 8;
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
 constexpr uint32_t kNothingVisible = 0xFFFFFFFFu;
 
-/// Kernels may read and write this many elements behind a tile's planes and triangles.
-constexpr int kTileSlack = 16;
+/// Kernels may read and write this many elements behind a tile's depths.
+constexpr int kTileSlack = kTileSize + kBlockSize;
+/// Triangles that kernels take at once, at most: as many spare ones follow the last.
+constexpr int kMaxBatch = 16;
 
 struct Chunk;
 

@@ -7,29 +7,6 @@
 
 namespace still::internal {
 
-float shadingFlip(const Surface& s, const InstanceSetup& instance, uint32_t triangle,
-                  bool counter_clockwise) {
-    const uint32_t* index = s.indices + size_t(triangle) * 3;
-    double p[3][3], n[3] = {0, 0, 0};
-    for (int k = 0; k < 3; ++k) {
-        p[k][0] = double(s.x[index[k]]);
-        p[k][1] = double(s.y[index[k]]);
-        p[k][2] = double(s.z[index[k]]);
-        for (int i = 0; i < 3; ++i) {
-            n[i] += double(s.attributes[size_t(index[k]) * 5 + size_t(i)]);
-        }
-    }
-    double a[3], b[3];
-    for (int i = 0; i < 3; ++i) {
-        a[i] = p[1][i] - p[0][i];
-        b[i] = p[2][i] - p[0][i];
-    }
-    const double along = ((a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1]) +
-                         (a[0] * b[1] - a[1] * b[0]) * n[2];
-    const bool winding_side_seen = counter_clockwise != instance.mirrored;
-    return winding_side_seen == (along >= 0.0) ? 1.0f : -1.0f;
-}
-
 namespace {
 
 /// Σ a_k · b_k in the order of the shading kernels.
@@ -37,8 +14,7 @@ float sum3(const float a[3], const float b[3]) {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-}  // namespace
-
+/// The attributes that all surfaces have, and what follows from them and the planes.
 void copyAttributes(const Surface& s, const uint32_t index[3], ShadeTriangle& out) {
     for (int k = 0; k < 3; ++k) {
         const float* attributes = s.attributes + size_t(index[k]) * kAttributeStride;
@@ -54,21 +30,9 @@ void copyAttributes(const Surface& s, const uint32_t index[3], ShadeTriangle& ou
     out.u_dy = sum3(out.u, out.p_dy);
     out.v_dx = sum3(out.v, out.p_dx);
     out.v_dy = sum3(out.v, out.p_dy);
-    const bool mapped = (s.features & (kShadeNormalMap | kShadeHeightMap)) != 0;
-    for (int k = 0; k < 3 && mapped; ++k) {
-        const float* tangent = s.tangents + size_t(index[k]) * kTangentStride;
-        out.tx[k] = tangent[0];
-        out.ty[k] = tangent[1];
-        out.tz[k] = tangent[2];
-    }
-    out.handedness = mapped ? s.tangents[size_t(index[0]) * kTangentStride + 3] : 0.0f;
-    constexpr uint8_t kNeedsPosition = kShadePosition | kShadeMoved | kShadeHeightMap;
-    for (int k = 0; k < 3 && (s.features & kNeedsPosition) != 0; ++k) {
-        out.x[k] = s.x[index[k]];
-        out.y[k] = s.y[index[k]];
-        out.z[k] = s.z[index[k]];
-    }
 }
+
+}  // namespace
 
 void makeShadeTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
     const FrameTables& frame = *tile.frame;
@@ -127,6 +91,8 @@ void makeShadeTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
     // With y down, the triangles that had to be swapped run counter-clockwise on the screen.
     out.flip = shadingFlip(s, frame.instances[s.instance], t.triangle, t.swapped != 0);
     copyAttributes(s, index, out);
+    out.handedness = handednessOf(s, index);
+    copyExtras(s, index, out);
 }
 
 }  // namespace still::internal

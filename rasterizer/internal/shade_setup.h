@@ -16,15 +16,46 @@ inline void prepareTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
     }
 }
 
+/// True when the normals of a triangle's vertices lie on the side that sees it counter-clockwise.
+bool windingAgrees(const float* x, const float* y, const float* z, const float* attributes,
+                   const uint32_t index[3]);
+
 /// +1 when the interpolated normals of triangle `triangle` of the mesh look towards the eye, −1
 /// when they have to be turned. The side that is seen is the geometric one; which way its normal
 /// counts as outward is told by the vertex normals, so that models with inconsistent winding are
 /// lit right, too.
-float shadingFlip(const Surface& s, const InstanceSetup& instance, uint32_t triangle,
-                  bool counter_clockwise);
+inline float shadingFlip(const Surface& s, const InstanceSetup& instance, uint32_t triangle,
+                         bool counter_clockwise) {
+    const bool agrees =
+        s.windings != nullptr
+            ? (s.windings[triangle / 32] >> triangle % 32 & 1u) != 0
+            : windingAgrees(s.x, s.y, s.z, s.attributes, s.indices + size_t(triangle) * 3);
+    return (counter_clockwise != instance.mirrored) == agrees ? 1.0f : -1.0f;
+}
 
-/// Fills the corners' attributes and what follows from them; `index` are the corners' vertices, the
-/// planes stand there already.
-void copyAttributes(const Surface& s, const uint32_t index[3], ShadeTriangle& out);
+/// Of the tangent at the first of a triangle's vertices; 0 without tangents.
+inline float handednessOf(const Surface& s, const uint32_t index[3]) {
+    const bool mapped = (s.features & (kShadeNormalMap | kShadeHeightMap)) != 0;
+    return mapped ? s.tangents[size_t(index[0]) * kTangentStride + 3] : 0.0f;
+}
+
+/// Fills what only some surfaces need of a triangle's corners: tangents and positions.
+inline void copyExtras(const Surface& s, const uint32_t index[3], ShadeTriangle& out) {
+    if ((s.features & (kShadeNormalMap | kShadeHeightMap)) != 0) {
+        for (int k = 0; k < 3; ++k) {
+            const float* tangent = s.tangents + size_t(index[k]) * kTangentStride;
+            out.tx[k] = tangent[0];
+            out.ty[k] = tangent[1];
+            out.tz[k] = tangent[2];
+        }
+    }
+    if ((s.features & (kShadePosition | kShadeMoved | kShadeHeightMap)) != 0) {
+        for (int k = 0; k < 3; ++k) {
+            out.x[k] = s.x[index[k]];
+            out.y[k] = s.y[index[k]];
+            out.z[k] = s.z[index[k]];
+        }
+    }
+}
 
 }  // namespace still::internal

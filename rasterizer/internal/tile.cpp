@@ -53,12 +53,12 @@ void collectTriangles(const FrameBins& bins, int tx, int ty, TileContext& tile,
         }
     }
     scratch.runs.push_back({count, nullptr});
-    TileTriangle* triangles = scratch.triangles.reserve(count + kTileSlack);
+    TileTriangle* triangles = scratch.triangles.reserve(count + kMaxBatch);
     for (const TileRun* run = scratch.runs.data(); run->chunk != nullptr; ++run) {
         const Chunk::Range range = run->chunk->recordsOf(tx, ty);
         std::copy(range.begin, range.end, triangles + run->begin);
     }
-    std::fill_n(triangles + count, kTileSlack, TileTriangle{});
+    std::fill_n(triangles + count, kMaxBatch, TileTriangle{});
     tile.triangles = triangles;
     tile.triangle_count = count;
     tile.runs = scratch.runs.data();

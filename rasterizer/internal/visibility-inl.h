@@ -52,14 +52,6 @@ inline bool tileEdges(const SetupTriangle& t, const TileContext& tile, TileEdges
     return true;
 }
 
-/// Which of the samples from (x, y) on the triangle has. Shading may work on more lanes than there
-/// are here.
-HWY_INLINE FMask alphaLanes(const TileContext& tile, const ShadeTriangle& triangle, int x, int y) {
-    uint8_t bits[8] = {};
-    hn::StoreMaskBits(shading::FTag(), shading::alphaMask(tile, triangle, x, y), bits);
-    return hn::LoadMaskBits(FTag(), bits);
-}
-
 /// Lower bounds of the depths in each block. Every triangle raises depths, so an old bound stays a
 /// bound; it is worth renewing when as many samples as a block has have been drawn since.
 struct BlockBounds {
@@ -68,12 +60,6 @@ struct BlockBounds {
 };
 constexpr uint32_t kDrawnBeforeRenewal = kBlockSize * kBlockSize;
 constexpr int kLastInBlock = kBlockSize - 1;
-
-HWY_INLINE uint32_t maskBits(hn::Mask<ITag> mask) {
-    uint8_t bits[8];
-    hn::StoreMaskBits(ITag(), mask, bits);
-    return bits[0];
-}
 
 HWY_INLINE int blockAt(int x, int y) {
     return y / kBlockSize * kBlocksPerTile + x / kBlockSize;
@@ -92,7 +78,48 @@ inline void renewBound(const TileContext& tile, BlockBounds& bounds, int b) {
     bounds.drawn[b] = 0;
 }
 
+/// Samples that are tested at once: 8 columns, or as many as there are lanes, of one row or two.
+using SampleTag = shading::FTag;
+using SampleIntTag = hn::RebindToSigned<SampleTag>;
+using SampleVec = hn::Vec<SampleTag>;
+using SampleMask = hn::Mask<SampleTag>;
+constexpr int kColumnsAtOnce = std::min(kBlockSize, int(hn::MaxLanes(SampleTag())));
+constexpr int kRowsAtOnce = int(hn::MaxLanes(SampleTag())) / kColumnsAtOnce;
+
+HWY_INLINE hn::Vec<SampleIntTag> laneX() {
+    const SampleIntTag d;
+    return hn::And(hn::Iota(d, 0), hn::Set(d, kColumnsAtOnce - 1));
+}
+
+HWY_INLINE hn::Vec<SampleIntTag> laneY() {
+    const SampleIntTag d;
+    return kRowsAtOnce == 1 ? hn::Zero(d) : hn::ShiftRight<3>(hn::Iota(d, 0));
+}
+
+template <class T, class D = hn::Rebind<T, SampleTag>>
+HWY_INLINE hn::Vec<D> loadSamples(const T* from) {
+    if constexpr (kRowsAtOnce == 1) {
+        return hn::LoadU(D(), from);
+    } else {
+        const hn::Half<D> half;
+        return hn::Combine(D(), hn::LoadU(half, from + kTileSize), hn::LoadU(half, from));
+    }
+}
+
+template <class T, class D = hn::Rebind<T, SampleTag>>
+HWY_INLINE void storeSamples(hn::Vec<D> v, T* to) {
+    if constexpr (kRowsAtOnce == 1) {
+        hn::StoreU(v, D(), to);
+    } else {
+        const hn::Half<D> half;
+        hn::StoreU(hn::LowerHalf(half, v), half, to);
+        hn::StoreU(hn::UpperHalf(half, v), half, to + kTileSize);
+    }
+}
+
 /// One triangle in one tile. kTested: each sample that passes is tested for alpha or shaded, too.
+/// Such triangles come late, so that as few samples as possible are left; at equal depth they go
+/// before those that were submitted after them.
 template <bool kTested>
 struct TriangleInTile {
     TileContext& tile;
@@ -102,66 +129,94 @@ struct TriangleInTile {
     const TilePlane plane;
     const TileEdges& edges;
 
-    /// Tests the samples of `covered` from (x, y); returns the depths that stand there afterwards.
-    HWY_INLINE FVec testLanes(int x, int y, FVec z, FMask covered) const {
-        const int i = y * kTileSize + x;
-        const FVec old = hn::LoadU(FTag(), tile.depth + i);
-        FMask pass = hn::And(covered, hn::Gt(z, old));
-        if (hn::AllFalse(FTag(), pass)) {
-            return old;
-        }
-        if constexpr (kTested) {
-            prepareTriangle(tile, chunk, index);
-            if (chunk.alpha) {
-                pass = hn::And(pass, alphaLanes(tile, tile.shade[index], x, y));
-                if (hn::AllFalse(FTag(), pass)) {
-                    return old;
-                }
-            }
-        }
-        const FVec now = hn::IfThenElse(pass, z, old);
-        hn::StoreU(now, FTag(), tile.depth + i);
-        uint32_t* visible = tile.visible + i;
-        hn::StoreU(hn::IfThenElse(hn::RebindMask(UTag(), pass), hn::Set(UTag(), index),
-                                  hn::LoadU(UTag(), visible)),
-                   UTag(), visible);
-        if constexpr (kTested) {
-            if (tile.forward) {
-                shading::shadeFragments(tile, index, x, y, maskBits(hn::RebindMask(ITag(), pass)));
-            }
-        }
-        return now;
+    int32_t* visible() const { return reinterpret_cast<int32_t*>(tile.visible); }
+
+    bool reaches(float nearest, float bound) const {
+        return kTested ? nearest >= bound : nearest > bound;
     }
 
-    /// The rows y0 … y1 of a group of columns from x. Returns the lane-wise smallest depths.
-    template <bool kAllInside>
-    HWY_INLINE FVec columns(int x, int y0, int y1) const {
-        const IVec column = hn::Iota(ITag(), x);
-        const FMask in_bounds =
-            hn::RebindMask(FTag(), hn::And(hn::Gt(column, splatInt(plane.x0 - 1)),
-                                           hn::Lt(column, splatInt(plane.x1 + 1))));
-        const FVec along =
-            hn::Mul(splat(plane.dx), hn::Sub(hn::Iota(FTag(), float(x)), splat(float(plane.x0))));
-        IVec e[3];
-        for (int k = 0; k < 3 && !kAllInside; ++k) {
-            e[k] = hn::Add(
-                splatInt(edges.c[k] + edges.a[k] * (x - edges.x) + edges.b[k] * (y0 - edges.y)),
-                hn::Mul(hn::Iota(ITag(), 0), splatInt(edges.a[k])));
+    /// The samples of `pass` that are drawn, and those of `equal` if they go before what is there.
+    HWY_INLINE SampleMask tested(int x, int y, SampleMask pass, SampleMask equal) const {
+        const SampleTag d;
+        const SampleIntTag di;
+        const auto later =
+            hn::Gt(loadSamples(visible() + y * kTileSize + x), hn::Set(di, int32_t(index)));
+        pass = hn::Or(pass, hn::And(equal, hn::RebindMask(d, later)));
+        // Where forward shading must not write.
+        const auto column = hn::Add(laneX(), hn::Set(di, x)),
+                   row = hn::Add(laneY(), hn::Set(di, y));
+        const auto beyond =
+            hn::Or(hn::Gt(column, hn::Set(di, plane.x1)), hn::Gt(row, hn::Set(di, plane.y1)));
+        pass = hn::AndNot(hn::RebindMask(d, beyond), pass);
+        if (hn::AllFalse(d, pass)) {
+            return pass;
         }
-        FVec lowest = splat(3.0e38f);
-        for (int y = y0; y <= y1; ++y) {
-            FMask covered = in_bounds;
+        prepareTriangle(tile, chunk, index);
+        return chunk.alpha ? hn::And(pass, shading::alphaMask(tile, tile.shade[index], column, row))
+                           : pass;
+    }
+
+    HWY_INLINE void shadePassed(int x, int y, SampleMask pass) const {
+        const uint32_t bits = maskBits(SampleTag(), pass);
+        constexpr uint32_t kRow = (1u << kColumnsAtOnce) - 1u;
+        for (int row = 0; row < kRowsAtOnce; ++row) {
+            if ((bits >> row * kColumnsAtOnce & kRow) != 0) {
+                shading::shadeFragments(tile, index, x, y + row,
+                                        bits >> row * kColumnsAtOnce & kRow);
+            }
+        }
+    }
+
+    /// The rows from y0 to y1 or one more of a group of columns from x. Returns the lane-wise
+    /// smallest depths. Samples beyond the picture may be written; clearBeyond() takes them back.
+    template <bool kAllInside>
+    HWY_INLINE SampleVec columns(int x, int y0, int y1) const {
+        const SampleTag d;
+        const SampleIntTag di;
+        const SampleVec along = hn::Mul(
+            hn::Set(d, plane.dx), hn::ConvertTo(d, hn::Add(laneX(), hn::Set(di, x - plane.x0))));
+        SampleVec down = hn::ConvertTo(d, hn::Add(laneY(), hn::Set(di, y0 - plane.y0)));
+        hn::Vec<SampleIntTag> e[3];
+        for (int k = 0; k < 3 && !kAllInside; ++k) {
+            const int32_t c = edges.c[k] + edges.a[k] * (x - edges.x) + edges.b[k] * (y0 - edges.y);
+            e[k] = hn::Add(hn::Set(di, c), hn::Add(hn::Mul(laneX(), hn::Set(di, edges.a[k])),
+                                                   hn::Mul(laneY(), hn::Set(di, edges.b[k]))));
+        }
+        SampleVec lowest = hn::Set(d, 3.0e38f);
+        for (int y = y0; y <= y1; y += kRowsAtOnce) {
+            const int i = y * kTileSize + x;
+            const SampleVec row =
+                hn::Add(hn::Set(d, plane.origin), hn::Mul(hn::Set(d, plane.dy), down));
+            const SampleVec z =
+                hn::Min(hn::Max(hn::Add(row, along), hn::Set(d, plane.min)), hn::Set(d, plane.max));
+            const SampleVec old = loadSamples(tile.depth + i);
+            SampleMask pass = hn::Gt(z, old), equal = hn::Eq(z, old);
             if constexpr (!kAllInside) {
-                const IVec outside = hn::Or(hn::Or(e[0], e[1]), e[2]);
-                covered = hn::And(covered, hn::RebindMask(FTag(), hn::Gt(outside, splatInt(-1))));
+                const auto outside = hn::Or(hn::Or(e[0], e[1]), e[2]);
+                const SampleMask covered = hn::RebindMask(d, hn::Gt(outside, hn::Set(di, -1)));
+                pass = hn::And(pass, covered);
+                equal = hn::And(equal, covered);
                 for (int k = 0; k < 3; ++k) {
-                    e[k] = hn::Add(e[k], splatInt(edges.b[k]));
+                    e[k] = hn::Add(e[k], hn::Set(di, edges.b[k] * kRowsAtOnce));
                 }
             }
-            const float row = plane.origin + plane.dy * float(y - plane.y0);
-            const FVec z =
-                hn::Min(hn::Max(hn::Add(splat(row), along), splat(plane.min)), splat(plane.max));
-            lowest = hn::Min(lowest, testLanes(x, y, z, covered));
+            down = hn::Add(down, hn::Set(d, float(kRowsAtOnce)));
+            if constexpr (kTested) {
+                pass = tested(x, y, pass, equal);
+            }
+            if (hn::AllFalse(d, pass)) {
+                lowest = hn::Min(lowest, old);
+                continue;
+            }
+            const SampleVec now = hn::IfThenElse(pass, z, old);
+            lowest = hn::Min(lowest, now);
+            storeSamples(now, tile.depth + i);
+            storeSamples(hn::IfThenElse(hn::RebindMask(di, pass), hn::Set(di, int32_t(index)),
+                                        loadSamples(visible() + i)),
+                         visible() + i);
+            if (kTested && tile.forward) {
+                shadePassed(x, y, pass);
+            }
         }
         return lowest;
     }
@@ -176,18 +231,19 @@ struct TriangleInTile {
         for (int by = by0; by <= by1; ++by) {
             for (int bx = bx0; bx <= bx1; ++bx) {
                 const int b = by * kBlocksPerTile + bx;
-                if (nearest > bounds.min[b] && bounds.drawn[b] >= kDrawnBeforeRenewal) {
+                if (reaches(nearest, bounds.min[b]) && bounds.drawn[b] >= kDrawnBeforeRenewal) {
                     renewBound(tile, bounds, b);
                 }
-                hidden &= !(nearest > bounds.min[b]);
+                hidden &= !reaches(nearest, bounds.min[b]);
             }
         }
         if (hidden) {
             ++tile.blocks_hidden;
             return;
         }
-        for (int x = plane.x0; x <= plane.x1; x += int(hn::Lanes(FTag()))) {
-            columns<false>(x, plane.y0, plane.y1);
+        for (int x = plane.x0; x <= plane.x1; x += kColumnsAtOnce) {
+            // Testing some samples twice does no harm, reaching beyond the tile does.
+            columns<false>(std::min(x, kTileSize - kColumnsAtOnce), plane.y0, plane.y1);
         }
         const uint32_t samples = uint32_t((plane.x1 - plane.x0 + 1) * (plane.y1 - plane.y0 + 1));
         for (int by = by0; by <= by1; ++by) {
@@ -201,13 +257,14 @@ struct TriangleInTile {
     template <bool kAllInside>
     HWY_INLINE void block(int bx, int by) const {
         const int y0 = std::max(by, plane.y0), y1 = std::min(by + kLastInBlock, plane.y1);
-        FVec lowest = splat(3.0e38f);
-        for (int x = bx; x < bx + kBlockSize; x += int(hn::Lanes(FTag()))) {
-            lowest = hn::Min(lowest, columns<kAllInside>(x, y0, y1));
+        float lowest = 3.0e38f;
+        for (int x = bx; x < bx + kBlockSize; x += kColumnsAtOnce) {
+            const SampleVec depths = columns<kAllInside>(x, y0, y1);
+            lowest = std::min(lowest, hn::GetLane(hn::MinOfLanes(SampleTag(), depths)));
         }
         const int b = blockAt(bx, by);
         if (y1 - y0 == kLastInBlock) {
-            bounds.min[b] = hn::GetLane(hn::MinOfLanes(FTag(), lowest));
+            bounds.min[b] = lowest;
             bounds.drawn[b] = 0;
         } else {
             bounds.drawn[b] += uint32_t(y1 - y0 + 1) * kBlockSize;
@@ -245,9 +302,10 @@ struct TriangleInTile {
         const FVec nearest =
             hn::Min(hn::Max(hn::Add(splat(row), s.along), splat(plane.min)), splat(plane.max));
         const int first = by / kBlockSize * kBlocksPerTile + first_block;
-        const uint32_t boxed = ~maskBits(hn::Gt(s.first_x, s.last_x)) & kLanes;
-        const uint32_t near = maskBits(
-            hn::RebindMask(ITag(), hn::Gt(nearest, hn::LoadU(FTag(), bounds.min + first))));
+        const uint32_t boxed = ~maskBits(ITag(), hn::Gt(s.first_x, s.last_x)) & kLanes;
+        const FVec bound = hn::LoadU(FTag(), bounds.min + first);
+        const FMask reached = kTested ? hn::Ge(nearest, bound) : hn::Gt(nearest, bound);
+        const uint32_t near = maskBits(FTag(), reached);
         tile.blocks_hidden += uint32_t(std::popcount(boxed & ~near));
         if ((boxed & near) == 0) {
             return;
@@ -258,8 +316,8 @@ struct TriangleInTile {
             highest = hn::Or(highest, hn::Add(s.edge[k], splatInt(c + s.high[k])));
             lowest = hn::Or(lowest, hn::Add(s.edge[k], splatInt(c + s.low[k])));
         }
-        const uint32_t outside = maskBits(hn::Lt(highest, splatInt(0)));
-        const uint32_t crossed = maskBits(hn::Lt(lowest, splatInt(0)));
+        const uint32_t outside = maskBits(ITag(), hn::Lt(highest, splatInt(0)));
+        const uint32_t crossed = maskBits(ITag(), hn::Lt(lowest, splatInt(0)));
         tile.blocks_outside += uint32_t(std::popcount(boxed & near & outside));
         alignas(64) float nearest_of[hn::MaxLanes(FTag())];
         hn::Store(nearest, FTag(), nearest_of);
@@ -268,7 +326,7 @@ struct TriangleInTile {
             const int b = first + lane;
             if (bounds.drawn[b] >= kDrawnBeforeRenewal) {
                 renewBound(tile, bounds, b);
-                if (!(nearest_of[lane] > bounds.min[b])) {
+                if (!reaches(nearest_of[lane], bounds.min[b])) {
                     ++tile.blocks_hidden;
                     continue;
                 }
@@ -361,16 +419,17 @@ HWY_NOINLINE void drawOne(TileContext& tile, BlockBounds& bounds, const CoverBat
     }
 }
 
-void rasterizeTile(TileContext& tile) {
-    BlockBounds bounds;
-    clearTile(tile);
-    if (tile.forward) {
-        shading::shadeTileLevel<0>(tile);  // all background
+/// The triangles from `run` on, up to the first run whose surface is alpha-tested or not as that of
+/// `run`. Returns the run that it stopped at.
+template <bool kTested>
+const TileRun* drawRuns(TileContext& tile, BlockBounds& bounds, const TileRun* run) {
+    const TileRun* last = run;
+    while (last->chunk != nullptr && last->chunk->alpha == run->chunk->alpha) {
+        ++last;
     }
     CoverBatch batch;
-    const TileRun* run = tile.runs;
-    for (uint32_t first = 0; first < tile.triangle_count; first += kBatch) {
-        const int count = int(std::min(tile.triangle_count - first, uint32_t(kBatch)));
+    for (uint32_t first = run->begin; first < last->begin; first += kBatch) {
+        const int count = int(std::min(last->begin - first, uint32_t(kBatch)));
         setUpBatch(tile, tile.triangles + first, count, batch);
         for (uint32_t left = batch.alive; left != 0; left &= left - 1) {
             const int lane = std::countr_zero(left);
@@ -378,15 +437,43 @@ void rasterizeTile(TileContext& tile) {
             while (i >= run[1].begin) {
                 ++run;
             }
-            if (run->chunk->alpha || tile.forward) {
-                drawOne<true>(tile, bounds, batch, lane, i, *run->chunk);
-            } else if ((batch.small >> lane & 1u) != 0) {
+            if (!kTested && (batch.small >> lane & 1u) != 0) {
                 drawSmall(tile, bounds, batch, lane, i);
             } else {
-                drawOne<false>(tile, bounds, batch, lane, i, *run->chunk);
+                drawOne<kTested>(tile, bounds, batch, lane, i, *run->chunk);
             }
         }
     }
+    return last;
+}
+
+/// Shading reads whole vectors of a row, beyond the picture, too: nothing must be seen there.
+inline void clearBeyond(TileContext& tile) {
+    for (int y = 0; y < tile.height && tile.width < kTileSize; ++y) {
+        const int first = y * kTileSize + tile.width;
+        std::fill_n(tile.depth + first, kTileSize - tile.width, 0.0f);
+        std::fill_n(tile.visible + first, kTileSize - tile.width, kNothingVisible);
+    }
+}
+
+void rasterizeTile(TileContext& tile) {
+    BlockBounds bounds;
+    clearTile(tile);
+    if (tile.forward) {
+        shading::shadeTileLevel<0>(tile);  // all background
+    }
+    for (const bool tested : {false, true}) {
+        const TileRun* run = tile.runs;
+        while (run->chunk != nullptr) {
+            if ((run->chunk->alpha || tile.forward) != tested) {
+                ++run;
+            } else {
+                run =
+                    tested ? drawRuns<true>(tile, bounds, run) : drawRuns<false>(tile, bounds, run);
+            }
+        }
+    }
+    clearBeyond(tile);
 }
 
 #endif

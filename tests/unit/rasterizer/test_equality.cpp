@@ -85,6 +85,27 @@ TEST_CASE("equality: planes that are not wanted do not change the others", "[det
     CHECK(firstDifference(expected, out) == "");
 }
 
+TEST_CASE("equality: windings known beforehand give the bytes of those found out",
+          "[determinism]") {
+    for (uint64_t seed = 0; seed < 6; ++seed) {
+        const FrameView view = busyView(seed);
+        TestScene scene = busyScene(seed);
+        const GBuffer expected = truth(scene, view);
+        std::vector<WindingBits> windings;
+        for (const Mesh& mesh : scene.meshes) {
+            windings.push_back(windingBits(mesh));
+        }
+        DrawList list = scene.list();
+        list.windings = windings;
+        for (SimdTarget target : availableSimdTargets()) {
+            GBuffer out;
+            draw(list, view, out, {.simd = target, .planes = kAllPlanes});
+            CAPTURE(seed, name(target));
+            CHECK(firstDifference(expected, out) == "");
+        }
+    }
+}
+
 TEST_CASE("equality: what a rasterizer and a G-buffer drew before does not show", "[determinism]") {
     Workers workers(2);
     Rasterizer rasterizer;
