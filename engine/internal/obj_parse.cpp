@@ -68,7 +68,6 @@ class ObjSource : public std::streambuf {
     void readPosition(std::string_view line);
     void readTexcoord(std::string_view line);
     void readNormal(std::string_view line);
-    bool readPlainFace(std::string_view line);
     bool prepareFace(char* begin, char* end);
     int32_t resolve(int index, size_t count) const;
     void startRun();
@@ -82,7 +81,6 @@ class ObjSource : public std::streambuf {
     int32_t material_ = kNoIndex;
     bool new_run_ = true;
     std::map<std::string, int32_t, std::less<>> material_numbers_;
-    std::vector<tinyobj::index_t> plain_face_;  ///< of the line that is being read
     Tally small_faces_, points_and_lines_, bad_texcoords_, bad_normals_, missing_attributes_;
 };
 
@@ -109,8 +107,7 @@ bool ObjSource::passOn(char* begin, std::string_view line) {
     } else if (startsStatement(line, "vn")) {
         readNormal(line.substr(2));
     } else if (startsStatement(line, "f")) {
-        return !readPlainFace(line.substr(1)) &&
-               prepareFace(begin, begin + (line.data() - begin) + line.size());
+        return prepareFace(begin, begin + (line.data() - begin) + line.size());
     } else if (startsStatement(line, "mtllib")) {
         file.libraries.emplace_back(trimmed(line.substr(6)));
     } else if (startsStatement(line, "l") || startsStatement(line, "p")) {
@@ -180,64 +177,6 @@ void ObjSource::readNormal(std::string_view line) {
         component = float(number);
     }
     file.normals.push_back(normal);
-}
-
-/// Takes an index of at most 9 digits off the front of `text`; false when there is none.
-bool takeIndex(std::string_view& text, int& index) {
-    constexpr size_t kMaxDigits = 9;
-    const bool negative = text.starts_with('-');
-    size_t at = negative ? 1 : 0;
-    const size_t begin = at;
-    int value = 0;
-    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; ++at) {
-        if (at - begin == kMaxDigits) {
-            return false;
-        }
-        value = value * 10 + (text[at] - '0');
-    }
-    index = negative ? -value : value;
-    text.remove_prefix(at);
-    return at > begin;
-}
-
-/// Takes "1", "1/2", "1//3" or "1/2/3" and the blanks behind it off the front of `line`; false when
-/// it reads otherwise.
-bool takePlainCorner(std::string_view& line, tinyobj::index_t& corner) {
-    corner = {0, 0, 0};
-    if (!takeIndex(line, corner.vertex_index)) {
-        return false;
-    }
-    for (int* index : {&corner.texcoord_index, &corner.normal_index}) {
-        if (!line.starts_with('/')) {
-            break;
-        }
-        line.remove_prefix(1);
-        const bool left_out = index == &corner.texcoord_index && line.starts_with('/');
-        if (!left_out && !takeIndex(line, *index)) {
-            return false;
-        }
-    }
-    if (!line.empty() && line[0] != ' ' && line[0] != '\t') {
-        return false;
-    }
-    while (!line.empty() && (line[0] == ' ' || line[0] == '\t')) {
-        line.remove_prefix(1);
-    }
-    return true;
-}
-
-/// Almost all faces are plain, and tinyobjloader takes several times as long for them. False: this
-/// one is for it.
-bool ObjSource::readPlainFace(std::string_view line) {
-    line = trimmed(line);
-    plain_face_.clear();
-    while (!line.empty()) {
-        if (!takePlainCorner(line, plain_face_.emplace_back())) {
-            return false;
-        }
-    }
-    onFace(plain_face_.data(), int(plain_face_.size()));
-    return true;
 }
 
 /// Blanks out a comment behind the corners and refuses numbers that do not fit an int: atoi() is

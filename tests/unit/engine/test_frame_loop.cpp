@@ -76,8 +76,14 @@ std::map<int, Bytes> renderAll(const Scene& scene, const FrameSettings& settings
 Image<uint32_t> redSum(const Scene& scene, const FrameSettings& settings, uint32_t count,
                        SampleOffset (*offset)(uint32_t index, uint32_t count)) {
     const FrameState state = frameStateAt(scene, {}, 0, settings.width, settings.height);
-    const DrawList list{scene.meshes,    scene.materials, scene.textures,  scene.alpha_textures,
-                        state.instances, state.lighting,  scene.background};
+    const DrawList list{.meshes = scene.meshes,
+                        .materials = scene.materials,
+                        .textures = scene.textures,
+                        .alpha_textures = scene.alpha_textures,
+                        .instances = state.instances,
+                        .windings = {},
+                        .lighting = state.lighting,
+                        .background = scene.background};
     Workers workers(1, Schedule::serial);
     Rasterizer rasterizer;
     GBuffer gbuffer;
