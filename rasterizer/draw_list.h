@@ -154,7 +154,7 @@ struct DrawList {
     std::span<const AlphaTexture> alpha_textures;
     std::span<const Instance> instances;
     /// windingBits() of each mesh, or empty: then they are found out for what is visible.
-    std::span<const WindingBits> windings;
+    std::span<const WindingBits> windings{};
     Lighting lighting;
     std::array<float, 3> background{};  ///< linear light
 };

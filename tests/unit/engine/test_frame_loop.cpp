@@ -81,7 +81,6 @@ Image<uint32_t> redSum(const Scene& scene, const FrameSettings& settings, uint32
                         .textures = scene.textures,
                         .alpha_textures = scene.alpha_textures,
                         .instances = state.instances,
-                        .windings = {},
                         .lighting = state.lighting,
                         .background = scene.background};
     Workers workers(1, Schedule::serial);
