@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Measures the figures that the README states: error against supersampled references, milliseconds
-# per stage, memory. Prints Markdown. Needs a release build (demos/run.sh) and a quiet machine;
-# Sponza is measured when the shared data folder is there (STILL_DATA, or ../shared/data).
+# Measures the errors that the README states, against supersampled references (times and memory:
+# tests/bench/run.sh). Prints Markdown. Needs a release build (demos/run.sh); Sponza is measured
+# when the shared data folder is there (STILL_DATA, or ../shared/data).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -38,20 +38,6 @@ error_row() {
     rm -f "$work"/*.png
 }
 
-# "stage median / p95" of every stage of a render --json.
-stages() {
-    awk -F'[:,]' '
-        /"(transform_bin|raster|taa|output|total)"/ {gsub(/[" {]/, "", $1); stage = $1}
-        /"median_ms"/ {printf " %.1f |", $2}
-        /"peak_rss_bytes"/ {printf " %.0f |\n", $2 / 1e6}'
-}
-
-time_row() {
-    local scene=$1 label=$2 threads=$3
-    shift 3
-    echo "| $(name_of "$scene") | $label | $threads |$("$still" render "$scene" --resolution 1920x1080 --threads "$threads" --json "$@" | stages)"
-}
-
 echo "## Error: PSNR in dB, 1280x720"
 echo
 echo "| scene | motion | reference | raw | TAA |"
@@ -59,15 +45,4 @@ echo "| --- | --- | --- | ---: | ---: |"
 for scene in "${scenes[@]}"; do
     error_row "$scene" "camera still, frame 63" 256 --start 63 --frames 1
     error_row "$scene" "camera orbits 1/3 degree per frame, 24 frames" 64 --orbit 8 --frames 24
-done
-echo
-echo "## Time: median milliseconds per frame, 1920x1080"
-echo
-echo "| scene | motion | threads | transform, bin | raster | TAA | output | total | peak MB |"
-echo "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
-for scene in "${scenes[@]}"; do
-    for threads in 1 2; do
-        time_row "$scene" "orbit" "$threads" --orbit 16 --frames 48
-        time_row "$scene" "camera still" "$threads" --frames 96
-    done
 done
