@@ -21,6 +21,23 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 ok, 1 images differ or a check failed, 2 usage, 3 cannot read or write.";
 constexpr int kMaxFrames = 1000000;
 
+/// `size` is a Size, which keeps its default, or an optional one.
+template <class Target>
+void addSize(CLI::App& command, Target& size, const char* text) {
+    command
+        .add_option_function<std::string>(
+            "--resolution",
+            [&size](const std::string& typed) {
+                const auto parsed = parseResolution(typed);
+                if (!parsed) {
+                    throw CLI::ValidationError(parsed.error().message);
+                }
+                size = *parsed;
+            },
+            text)
+        ->type_name("WIDTHxHEIGHT");
+}
+
 void addPictureOptions(CLI::App& render, RenderOptions& o) {
     render
         .add_option("-o,--output", o.output,
@@ -29,18 +46,7 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
                     "NAME.gif, NAME.mp4 (needs the ffmpeg program).\n"
                     "- writes a PNG to standard output")
         ->type_name("NAME");
-    render
-        .add_option_function<std::string>(
-            "--resolution",
-            [&o](const std::string& text) {
-                const auto size = parseResolution(text);
-                if (!size) {
-                    throw CLI::ValidationError(size.error().message);
-                }
-                o.resolution = *size;
-            },
-            "Also WIDTH,HEIGHT; default 1280x720, or the camera file's")
-        ->type_name("WIDTHxHEIGHT");
+    addSize(render, o.resolution, "Also WIDTH,HEIGHT; default 1280x720, or the camera file's");
     render
         .add_option("--anti-aliasing,--aa", o.anti_aliasing,
                     "none; taa: temporal, the default, which is taa:still;\n"
@@ -140,21 +146,6 @@ CLI::App* addPresets(CLI::App& app, bool& json) {
     return presets;
 }
 
-void addSize(CLI::App& command, Size& size, const char* text) {
-    command
-        .add_option_function<std::string>(
-            "--resolution",
-            [&size](const std::string& typed) {
-                const auto parsed = parseResolution(typed);
-                if (!parsed) {
-                    throw CLI::ValidationError(parsed.error().message);
-                }
-                size = *parsed;
-            },
-            text)
-        ->type_name("WIDTHxHEIGHT");
-}
-
 /// What the programs of the laboratory share.
 void addLaboratoryOptions(CLI::App& command, std::string& output, std::string& cache, bool& json) {
     command
@@ -219,18 +210,7 @@ CLI::App* addBench(CLI::App& app, BenchOptions& o) {
                      "FILE.obj, FILE.json or builtin:NAME; default those made for it,\n"
                      "and Sponza when it is in the folder STILL_DATA")
         ->type_name("");
-    bench
-        ->add_option_function<std::string>(
-            "--resolution",
-            [&o](const std::string& text) {
-                const auto size = parseResolution(text);
-                if (!size) {
-                    throw CLI::ValidationError(size.error().message);
-                }
-                o.resolution = *size;
-            },
-            "Default 1920x1080, or the camera file's")
-        ->type_name("WIDTHxHEIGHT");
+    addSize(*bench, o.resolution, "Default 1920x1080, or the camera file's");
     bench
         ->add_option("--threads", o.threads,
                      "One number or several with commas, measured in turns;\n"
