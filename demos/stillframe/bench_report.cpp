@@ -1,7 +1,6 @@
 #include "demos/stillframe/bench_report.h"
 
-#include <cstdio>
-
+#include "demos/stillframe/formatted.h"
 #include "demos/stillframe/json_report.h"
 #include "engine/hash.h"
 
@@ -138,13 +137,6 @@ Json resultJson(const BenchResult& result, const MachineLimits& limits) {
         json["hashes"].push_back({{"frame", frame.frame}, {"output", hex(frame.hash)}});
     }
     return json;
-}
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char line[256];
-    std::snprintf(line, sizeof line, format, values...);
-    return line;
 }
 
 std::string timesLine(const char* name, const std::vector<double>& times_ms) {

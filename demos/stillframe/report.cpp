@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "demos/stillframe/formatted.h"
 #include "demos/stillframe/json_report.h"
 #include "demos/stillframe/peak_memory.h"
 
@@ -55,13 +56,6 @@ Json differencesJson(const std::vector<Difference>& differences) {
                         {"b", pixelJson(d.b)}});
     }
     return json;
-}
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char line[256];
-    std::snprintf(line, sizeof line, format, values...);
-    return line;
 }
 
 std::string entryLine(std::string_view name, std::string_view what) {

@@ -4,17 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "demos/stillframe/formatted.h"
 #include "tests/bench/report/samples.h"
 
 namespace still::bench {
 namespace {
 
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    char text[256];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
+using command::formatted;
 
 /// Few digits, so that microseconds and hundreds of milliseconds can stand in one column.
 std::string number(double value) {
