@@ -225,16 +225,7 @@ HWY_NOINLINE Farthest farthestOf(const Windows& windows) {
         best.id = hn::IfThenElse(farther, other.id, best.id);
         best.which = hn::IfThenElse(farther, other.which, best.which);
     };
-    const auto columnOf = [&](int i) {
-        Farthest best = sample(1, i);
-        take(best, sample(0, i));
-        take(best, sample(2, i));
-        return best;
-    };
-    Farthest best = columnOf(0);
-    take(best, columnOf(-1));
-    take(best, columnOf(1));
-    return best;
+    return bestOfWindow(sample, take);
 }
 
 /// What a frame shows around a layer's places.

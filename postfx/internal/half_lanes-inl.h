@@ -59,6 +59,22 @@ HWY_INLINE VS distance(VS a, VS b) {
     return hn::Max(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a));
 }
 
+/// The best of sample(row 0 … 2, column −1 … 1). take(best, other) leaves the first on a tie:
+/// middle before top before bottom, then middle before left before right.
+template <class Sample, class Take>
+HWY_INLINE auto bestOfWindow(const Sample& sample, const Take& take) {
+    const auto column = [&](int i) {
+        auto best = sample(1, i);
+        take(best, sample(0, i));
+        take(best, sample(2, i));
+        return best;
+    };
+    auto best = column(0);
+    take(best, column(-1));
+    take(best, column(1));
+    return best;
+}
+
 /// sum + a.even · b.even + a.odd · b.odd in each wide lane.
 HWY_INLINE VW addProducts(VW sum, VS a, VS b) {
 #if HWY_ARCH_X86

@@ -120,15 +120,7 @@ HWY_INLINE VS findNearest(const Job& job, const Rows& rows, SeenLanes& seen) {
         best.id = hn::IfThenElse(nearer, other.id, best.id);
         best.which = hn::IfThenElse(nearer, other.which, best.which);
     };
-    const auto column = [&](int i) {
-        Best best = sample(1, i);
-        take(best, sample(0, i));
-        take(best, sample(2, i));
-        return best;
-    };
-    Best best = column(0);
-    take(best, column(-1));
-    take(best, column(1));
+    const Best best = bestOfWindow(sample, take);
     const VS mask = set(kSurfaceMask);
     const MS same = hn::Eq(hn::And(best.id, mask), hn::And(seen.id, mask));
     const VS step = hn::SaturatedSub(best.depth, seen.depth);
