@@ -85,4 +85,4 @@ swift=("$work"/*.swiftshader.json)
 "$report" --ours "$work"/*.ours.json --llvmpipe "${llvmpipe[@]}" \
     ${swift[0]:+--swiftshader "${swift[@]}"} \
     --note "$(date -u +%Y-%m-%d), commit $commit: $cpu, $(nproc) cores; $system; $compiler." \
-    --note "$rounds rounds, renderers in turns scene by scene."
+    --note "Rounds: $rounds; renderers in turns scene by scene."
