@@ -1,0 +1,108 @@
+// stillframe atlas, chart and bench: their options.
+
+#include <memory>
+
+#include "demos/scenes/bench_scenes.h"
+#include "demos/stillframe/atlas.h"
+#include "demos/stillframe/bench.h"
+#include "demos/stillframe/chart.h"
+#include "demos/stillframe/cli.h"
+
+namespace still::command {
+namespace {
+
+/// What the programs of the laboratory share.
+void addLaboratoryOptions(CLI::App& command, std::string& output, std::string& cache, bool& json) {
+    command
+        .add_option("-o,--output", output, "Folder for what is found, made when it is not there")
+        ->required()
+        ->type_name("DIR");
+    command
+        .add_option("--cache", cache,
+                    "Folder for references, default $XDG_CACHE_HOME/stillframe\n"
+                    "or ~/.cache/stillframe")
+        ->type_name("DIR");
+    command.add_flag("--json", json, "Print the results as one JSON object");
+}
+
+}  // namespace
+
+Subcommand declareAtlas(CLI::App& app) {
+    const auto o = std::make_shared<AtlasOptions>();
+    CLI::App* atlas = app.add_subcommand(
+        "atlas", "Measure ways of anti-aliasing on scenes on which such ways fail");
+    addLaboratoryOptions(*atlas, o->output, o->cache, o->json);
+    atlas->add_option("--scenes", o->scenes, "Cases with commas, default all that are quick")
+        ->type_name("NAMES");
+    atlas
+        ->add_option("--presets", o->presets,
+                     "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa")
+        ->type_name("NAMES");
+    addSize(*atlas, o->resolution, "Default 320x180");
+    return {atlas, [o](Interruption& interruption) {
+                return still::command::atlas(*o, interruption).map([] { return ExitCode::ok; });
+            }};
+}
+
+Subcommand declareChart(CLI::App& app) {
+    const auto o = std::make_shared<ChartOptions>();
+    CLI::App* chart = app.add_subcommand(
+        "chart", "Draw milliseconds per frame against error, for all ways of anti-aliasing");
+    chart->add_option("SCENE", o->scenes, "FILE.obj, FILE.json or builtin:NAME; one or several")
+        ->required()
+        ->type_name("");
+    addLaboratoryOptions(*chart, o->output, o->cache, o->json);
+    addSize(*chart, o->resolution, "Default 640x360");
+    chart->add_option("--frames", o->frames, "Of each segment, default 64")
+        ->check(CLI::Range(4, 10000))
+        ->type_name("N");
+    chart
+        ->add_option("--orbit", o->orbit_deg,
+                     "The camera circles its target by so much each frame of the\n"
+                     "moving segment, default 1/3")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->type_name("DEGREES");
+    chart
+        ->add_option("--samples", o->reference_samples,
+                     "Of the moving segment's references, default 256; the still\n"
+                     "one's get four times as many")
+        ->check(CLI::Range(1, 16384))
+        ->type_name("N");
+    return {chart, [o](Interruption& interruption) {
+                return still::command::chart(*o, interruption).map([] { return ExitCode::ok; });
+            }};
+}
+
+Subcommand declareBench(CLI::App& app) {
+    const auto o = std::make_shared<BenchOptions>();
+    CLI::App* bench = app.add_subcommand(
+        "bench",
+        "Measure the stages of a frame: scenes at rest, under a moving camera, with\n"
+        "moving objects");
+    bench
+        ->add_option("SCENE", o->scenes,
+                     "FILE.obj, FILE.json or builtin:NAME; default those made for it,\n"
+                     "and Sponza when it is in the folder STILL_DATA")
+        ->type_name("");
+    addSize(*bench, o->resolution, "Default 1920x1080, or the camera file's");
+    bench
+        ->add_option("--threads", o->threads,
+                     "One number or several with commas, measured in turns;\n"
+                     "default all cores")
+        ->type_name("N,...");
+    bench
+        ->add_option("--frames", o->frames,
+                     "Of each motion, the first quarter of them unmeasured; default 72:\n"
+                     "a scene at rest is finished after 64")
+        ->check(CLI::Range(4, kBenchFrames))
+        ->type_name("N");
+    bench->add_option("--cameras", o->cameras, "JSON with a view and a projection for each frame")
+        ->type_name("FILE");
+    bench->add_option("--simd", o->simd, "Instruction set, default the best")->type_name("TARGET");
+    bench->add_flag("--json", o->json, "Print the results as one JSON object");
+    return {bench, [o](Interruption&) {
+                return still::command::bench(*o).map([] { return ExitCode::ok; });
+            }};
+}
+
+}  // namespace still::command
