@@ -1,6 +1,8 @@
+#include <charconv>
 #include <cmath>
 #include <glm/matrix.hpp>
 
+#include "engine/camera.h"
 #include "engine/internal/json.h"
 #include "engine/internal/obj_text.h"
 #include "engine/load.h"
@@ -10,7 +12,7 @@ namespace still {
 namespace {
 
 constexpr double kLimit = 1e9;
-constexpr size_t kMaxFrames = 1000000;
+constexpr int kMaxFrames = 1000000;
 
 glm::dmat4 matrixFrom(const JsonCursor& cursor) {
     const std::vector<double> values = cursor.numbers(16, -kLimit, kLimit);
@@ -49,12 +51,18 @@ std::array<int, 2> jitterFrom(const JsonCursor& cursor) {
 }
 
 CameraFileFrame frameFrom(const JsonCursor& cursor) {
-    cursor.expectKeys({"view", "proj", "jitter"});
+    cursor.expectKeys({"view", "proj", "jitter", "frame", "cut"});
     CameraFileFrame frame;
     frame.view = viewFrom(cursor.require("view"));
     frame.projection = matrixFrom(cursor.require("proj"));
     if (const auto jitter = cursor.find("jitter")) {
         frame.jitter_fx8 = jitterFrom(*jitter);
+    }
+    if (const auto instant = cursor.find("frame")) {
+        frame.scene_frame = instant->integer(0, kMaxFrames);
+    }
+    if (const auto cut = cursor.find("cut")) {
+        frame.cut = cut->boolean();
     }
     return frame;
 }
@@ -72,7 +80,7 @@ Result<CameraFile> loadCameraFile(const std::filesystem::path& file) {
     CameraFile cameras;
     cameras.width = root.require("width").integer(1, kMaxTargetSize);
     cameras.height = root.require("height").integer(1, kMaxTargetSize);
-    for (const JsonCursor& frame : root.require("frames").items(1, kMaxFrames)) {
+    for (const JsonCursor& frame : root.require("frames").items(1, size_t(kMaxFrames))) {
         cameras.frames.push_back(frameFrom(frame));
     }
     if (report.error) {
@@ -80,6 +88,53 @@ Result<CameraFile> loadCameraFile(const std::filesystem::path& file) {
     }
     cameras.warnings = std::move(report.warnings);
     return cameras;
+}
+
+namespace {
+
+/// The shortest text that reads back as the same number.
+void appendNumber(std::string& text, double value) {
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+void appendMatrix(std::string& text, const char* name, const glm::dmat4& matrix) {
+    text += "\"" + std::string(name) + "\":[";
+    for (int i = 0; i < 16; ++i) {
+        text += i == 0 ? "" : ",";
+        appendNumber(text, matrix[i / 4][i % 4]);
+    }
+    text += "]";
+}
+
+void appendFrame(std::string& text, const CameraFileFrame& frame) {
+    text += "{";
+    appendMatrix(text, "view", frame.view);
+    text += ",";
+    appendMatrix(text, "proj", frame.projection);
+    if (frame.jitter_fx8) {
+        text += ",\"jitter\":[";
+        appendNumber(text, double((*frame.jitter_fx8)[0]) / kSubpixelOne);
+        text += ",";
+        appendNumber(text, double((*frame.jitter_fx8)[1]) / kSubpixelOne);
+        text += "]";
+    }
+    if (frame.scene_frame) {
+        text += ",\"frame\":" + std::to_string(*frame.scene_frame);
+    }
+    text += frame.cut ? ",\"cut\":true}" : "}";
+}
+
+}  // namespace
+
+std::string cameraFileText(const CameraFile& cameras) {
+    std::string text = "{\"width\":" + std::to_string(cameras.width) +
+                       ",\"height\":" + std::to_string(cameras.height) + ",\"frames\":[\n";
+    for (size_t i = 0; i < cameras.frames.size(); ++i) {
+        text += i == 0 ? "" : ",\n";
+        appendFrame(text, cameras.frames[i]);
+    }
+    return text + "\n]}\n";
 }
 
 }  // namespace still

@@ -140,7 +140,7 @@ struct FrameLoop::State {
 
 /// The frame whose history is empty and on which `frame` builds.
 int FrameLoop::State::historyStart(int frame) const {
-    const int cut = lastCut(scene, frame);
+    const int cut = lastCut(scene, settings.camera, frame);
     return resize_frame <= frame ? std::max(cut, resize_frame) : cut;
 }
 

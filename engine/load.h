@@ -16,9 +16,10 @@ namespace still {
 Result<Scene> loadScene(const std::filesystem::path& file,
                         const std::filesystem::path& cache_folder = {});
 
-/// Loads {"width":W,"height":H,"frames":[{"view":[16],"proj":[16],"jitter":[x,y]}…]}: column-major,
-/// OpenGL clip space, proj unjittered, jitter in pixels = sample offset from the pixel centre, x to
-/// the right and y down, in [−0.5, 0.5), rounded to 1/256.
+/// Loads {"width":W,"height":H,"frames":[{"view":[16],"proj":[16],"jitter":[x,y],"frame":N,
+/// "cut":true}…]}: column-major, OpenGL clip space, proj unjittered, jitter in pixels = sample
+/// offset from the pixel centre, x to the right and y down, in [−0.5, 0.5), rounded to 1/256; the
+/// last three are optional, see CameraFileFrame.
 Result<CameraFile> loadCameraFile(const std::filesystem::path& file);
 
 /// Sets eye, target, near and far so that the projected bounds of frame 0 fill the picture with a

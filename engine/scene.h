@@ -78,15 +78,21 @@ struct Camera {
     double near = 0.1, far = 1000.0;
 };
 
-/// One frame of a camera file: explicit matrices from another renderer, OpenGL conventions.
+/// One frame of a camera file: explicit matrices from another renderer or of a live session, OpenGL
+/// conventions.
 struct CameraFileFrame {
     glm::dmat4 view{1.0}, projection{1.0};
-    std::optional<std::array<int, 2>> jitter_fx8;  ///< sample offset from the pixel centre, y down
+    std::optional<std::array<int, 2>>
+        jitter_fx8{};  ///< sample offset from the pixel centre, y down
+    /// The instant of the scene that is shown, ≥ 0: tracks and cuts are taken there. Empty: the
+    /// frame's own number. Sessions pause, repeat and skip.
+    std::optional<int> scene_frame{};
+    bool cut = false;  ///< the frame has no past
 };
 struct CameraFile {
     int width = 0, height = 0;
-    std::vector<CameraFileFrame> frames;
-    std::vector<std::string> warnings;  ///< one line each, for standard error
+    std::vector<CameraFileFrame> frames{};
+    std::vector<std::string> warnings{};  ///< one line each, for standard error
 };
 
 struct SceneLights {

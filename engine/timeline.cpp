@@ -8,40 +8,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/det_math.h"
+#include "engine/camera.h"
 #include "engine/internal/tracks.h"
 
 namespace still {
 namespace {
-
-/// View matrix from the pose; a degenerate pose falls back to looking along −z, or to another up.
-glm::dmat4 lookAt(const CameraPose& pose) {
-    glm::dvec3 forward = pose.target - pose.eye;
-    forward = lengthOf(forward) > 0 ? unit(forward) : glm::dvec3(0, 0, -1);
-    glm::dvec3 side = glm::cross(forward, pose.up);
-    if (!(lengthOf(side) > 1e-9 * lengthOf(pose.up))) {
-        const bool along_z = forward.z > 0.9 || forward.z < -0.9;
-        side = glm::cross(forward, along_z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
-    }
-    side = unit(side);
-    const glm::dvec3 up = glm::cross(side, forward);
-    return {glm::dvec4(side.x, up.x, -forward.x, 0), glm::dvec4(side.y, up.y, -forward.y, 0),
-            glm::dvec4(side.z, up.z, -forward.z, 0),
-            glm::dvec4(-glm::dot(side, pose.eye), -glm::dot(up, pose.eye),
-                       glm::dot(forward, pose.eye), 1)};
-}
-
-/// OpenGL: z = −near maps to −w, z = −far to w.
-glm::dmat4 perspective(double fov_y_deg, double aspect, double near, double far) {
-    const double zoom = 1 / det::tanDegrees(fov_y_deg / 2);
-    glm::dmat4 projection(0.0);
-    projection[0][0] = zoom / aspect;
-    projection[1][1] = zoom;
-    projection[2][2] = (far + near) / (near - far);
-    projection[2][3] = -1;
-    projection[3][2] = 2 * far * near / (near - far);
-    return projection;
-}
 
 /// Where an affine view matrix maps to the origin (Cramer's rule).
 glm::dvec3 eyeOf(const glm::dmat4& view) {
@@ -58,6 +29,11 @@ glm::dvec3 eyeOf(const glm::dmat4& view) {
 const CameraFileFrame& fileFrame(const CameraFile& file, int frame) {
     assert(!file.frames.empty());
     return file.frames[std::min(size_t(frame), file.frames.size() - 1)];
+}
+
+/// The instant of the scene that a frame shows.
+int instantOf(const CameraFile* file, int frame) {
+    return file == nullptr ? frame : fileFrame(*file, frame).scene_frame.value_or(frame);
 }
 
 CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
@@ -86,8 +62,8 @@ CameraState cameraAt(const Scene& scene, const CameraChoice& choice, int frame, 
     }
     const CameraPose pose = poseAt(scene, choice, frame);
     const glm::dmat4 projection =
-        perspective(pose.fov_y_deg, aspect, scene.camera.near, scene.camera.far);
-    return {projection * lookAt(pose), pose.eye};
+        perspectiveMatrix(pose.fov_y_deg, aspect, scene.camera.near, scene.camera.far);
+    return {projection * viewMatrix(pose), pose.eye};
 }
 
 std::array<float, 3> scaled(const std::array<float, 3>& colour, const Track<double>& intensity,
@@ -124,7 +100,8 @@ bool sameLight(const Lighting& a, const Lighting& b) {
                       same_point);
 }
 
-std::vector<Instance> instancesAt(const Scene& scene, int frame, bool cut) {
+/// At `instant`, with the transforms of `before`; a cut has no before.
+std::vector<Instance> instancesAt(const Scene& scene, int instant, int before, bool cut) {
     std::vector<Instance> instances;
     instances.reserve(scene.objects.size());
     uint32_t surface = 1;
@@ -133,10 +110,10 @@ std::vector<Instance> instancesAt(const Scene& scene, int frame, bool cut) {
         instance.mesh = object.mesh;
         instance.object = uint16_t(instances.size() + 1);
         instance.first_surface = uint16_t(surface);
-        instance.transform = toAffine(worldTransform(object, frame));
+        instance.transform = toAffine(worldTransform(object, instant));
         instance.transform_before = cut || !varies(object.tracks)
                                         ? instance.transform
-                                        : toAffine(worldTransform(object, frame - 1));
+                                        : toAffine(worldTransform(object, before));
         instance.identity = instance.transform == kIdentity;
         instance.moved = instance.transform != instance.transform_before;
         surface += uint32_t(scene.meshes[object.mesh].parts.size());
@@ -187,11 +164,11 @@ std::vector<Material> materialsAt(const Scene& scene, int frame) {
 }
 
 /// See FrameState::changed_surfaces.
-std::vector<uint64_t> changedSurfaces(const Scene& scene, int frame) {
+std::vector<uint64_t> changedSurfaces(const Scene& scene, int instant, int before) {
     std::vector<uint8_t> changed(scene.materials.size(), 0);
     for (const MaterialTracks& tracks : scene.material_tracks) {
         changed[tracks.material] =
-            materialAt(scene, tracks, frame) != materialAt(scene, tracks, frame - 1) ? 1 : 0;
+            materialAt(scene, tracks, instant) != materialAt(scene, tracks, before) ? 1 : 0;
     }
     if (std::find(changed.begin(), changed.end(), 1) == changed.end()) {
         return {};
@@ -251,7 +228,9 @@ bool cameraVaries(const Scene& scene, const CameraChoice& choice) {
         const auto& frames = file->frames;
         return std::any_of(frames.begin(), frames.end(), [&](const CameraFileFrame& frame) {
             return frame.view != frames[0].view || frame.projection != frames[0].projection ||
-                   frame.jitter_fx8 != frames[0].jitter_fx8;
+                   frame.jitter_fx8 != frames[0].jitter_fx8 ||
+                   (frame.cut && &frame != &frames[0]) ||
+                   frame.scene_frame != frames[0].scene_frame;
         });
     }
     const Camera& camera = scene.camera;
@@ -270,29 +249,53 @@ const CameraFile* cameraFileOf(const Scene& scene, const CameraChoice& choice) {
     return own ? &*scene.camera_file : nullptr;
 }
 
-int lastCut(const Scene& scene, int frame) {
-    const auto after = std::upper_bound(scene.cuts.begin(), scene.cuts.end(), frame);
+/// The last of the scene's cuts up to an instant.
+static int lastSceneCut(const Scene& scene, int instant) {
+    const auto after = std::upper_bound(scene.cuts.begin(), scene.cuts.end(), instant);
     return after == scene.cuts.begin() ? 0 : std::max(0, *(after - 1));
+}
+
+static bool isCut(const Scene& scene, const CameraFile* file, int frame) {
+    if (frame == 0 || (file != nullptr && size_t(frame) < file->frames.size() &&
+                       file->frames[size_t(frame)].cut)) {
+        return true;
+    }
+    return lastSceneCut(scene, instantOf(file, frame)) !=
+           lastSceneCut(scene, instantOf(file, frame - 1));
+}
+
+int lastCut(const Scene& scene, const CameraChoice& choice, int frame) {
+    const CameraFile* file = cameraFileOf(scene, choice);
+    if (file == nullptr) {
+        return lastSceneCut(scene, frame);
+    }
+    while (!isCut(scene, file, frame)) {
+        --frame;
+    }
+    return frame;
 }
 
 FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,
                         int height) {
     assert(frame >= 0 && width > 0 && height > 0);
     const double aspect = double(width) / height;
+    const CameraFile* file = cameraFileOf(scene, choice);
     FrameState state;
-    state.cut = lastCut(scene, frame) == frame;
-    state.instances = instancesAt(scene, frame, state.cut);
+    state.cut = isCut(scene, file, frame);
+    const int instant = instantOf(file, frame);
+    const int before = state.cut ? instant : instantOf(file, frame - 1);
+    state.instances = instancesAt(scene, instant, before, state.cut);
     state.turning_surfaces = turningSurfaces(scene, state.instances);
-    state.lighting = lightingAt(scene.lights, frame);
+    state.lighting = lightingAt(scene.lights, instant);
     state.camera = cameraAt(scene, choice, frame, aspect);
     state.camera_before = state.cut ? state.camera : cameraAt(scene, choice, frame - 1, aspect);
     state.lighting_changed =
-        !state.cut && !sameLight(state.lighting, lightingAt(scene.lights, frame - 1));
-    state.materials = materialsAt(scene, frame);
+        !state.cut && !sameLight(state.lighting, lightingAt(scene.lights, before));
+    state.materials = materialsAt(scene, instant);
     if (!scene.material_tracks.empty() && !state.cut) {
-        state.changed_surfaces = changedSurfaces(scene, frame);
+        state.changed_surfaces = changedSurfaces(scene, instant, before);
     }
-    if (const CameraFile* file = cameraFileOf(scene, choice)) {
+    if (file != nullptr) {
         state.jitter_fx8 = fileFrame(*file, frame).jitter_fx8;
     }
     return state;
@@ -303,6 +306,13 @@ std::span<const Material> materialsOf(const Scene& scene, const FrameState& stat
 }
 
 bool isStill(const Scene& scene, const CameraChoice& choice) {
+    if (cameraVaries(scene, choice)) {
+        return false;
+    }
+    const CameraFile* file = cameraFileOf(scene, choice);
+    if (file != nullptr && file->frames[0].scene_frame) {
+        return true;
+    }
     const bool has_cuts =
         std::any_of(scene.cuts.begin(), scene.cuts.end(), [](int cut) { return cut > 0; });
     const bool objects_move =
@@ -311,8 +321,7 @@ bool isStill(const Scene& scene, const CameraChoice& choice) {
     const bool materials_change =
         std::any_of(scene.material_tracks.begin(), scene.material_tracks.end(),
                     [&](const MaterialTracks& tracks) { return materialVaries(scene, tracks); });
-    return !has_cuts && !objects_move && !materials_change && !lightingVaries(scene.lights) &&
-           !cameraVaries(scene, choice);
+    return !has_cuts && !objects_move && !materials_change && !lightingVaries(scene.lights);
 }
 
 uint32_t surfaceCount(const Scene& scene) {

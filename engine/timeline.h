@@ -54,8 +54,9 @@ FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int fram
 /// The materials to draw `state` with; valid as long as both arguments.
 std::span<const Material> materialsOf(const Scene& scene, const FrameState& state);
 
-/// The last frame ≤ `frame` that has no past: 0 or one of the scene's cuts.
-int lastCut(const Scene& scene, int frame);
+/// The last frame ≤ `frame` that has no past: 0, one that goes over one of the scene's cuts, or one
+/// that the camera file calls a cut.
+int lastCut(const Scene& scene, const CameraChoice& choice, int frame);
 
 /// True when no frame differs from frame 0 (no animation of objects, materials, lights or
 /// camera, no orbit, cut or moving camera file).

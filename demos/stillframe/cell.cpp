@@ -72,7 +72,7 @@ class CellRun {
     void run() {
         const int first = prepared_.atlas->segments.front().first;
         const int last = lastFrame(*prepared_.atlas);
-        for (int frame = lastCut(prepared_.scene, first); frame <= last; ++frame) {
+        for (int frame = lastCut(prepared_.scene, {}, first); frame <= last; ++frame) {
             runFrame(frame);
         }
     }
@@ -99,11 +99,11 @@ bool CellRun::isCompared(int frame) const {
 }
 
 bool CellRun::isCut(int frame) const {
-    return lastCut(prepared_.scene, frame) == frame || prepared_.atlas->resize_frame == frame;
+    return lastCut(prepared_.scene, {}, frame) == frame || prepared_.atlas->resize_frame == frame;
 }
 
 int CellRun::samplesBefore(int frame) const {
-    return isCut(frame) ? 0 : frame - lastCut(prepared_.scene, frame);
+    return isCut(frame) ? 0 : frame - lastCut(prepared_.scene, {}, frame);
 }
 
 void CellRun::runFrame(int frame) {
@@ -185,7 +185,7 @@ void findRevealed(PreparedCase& prepared) {
         // One more, of which only the surfaces are taken.
         const int first = std::max(0, segment.first - kRevealFrames - 1);
         for (int frame = first; frame <= segment.last; ++frame) {
-            const bool cut = frame == first || lastCut(prepared.scene, frame) == frame;
+            const bool cut = frame == first || lastCut(prepared.scene, {}, frame) == frame;
             const auto revealed = mask.next(*loop.render(frame).gbuffer, cut);
             for (CaseFrame& compared : prepared.segments[i]) {
                 if (compared.frame == frame) {

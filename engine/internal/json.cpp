@@ -202,6 +202,13 @@ int JsonCursor::integer(int lowest, int highest) const {
     return int(value);
 }
 
+bool JsonCursor::boolean() const {
+    if (!is(JsonValue::Type::boolean)) {
+        expected("true or false");
+    }
+    return value_->boolean;
+}
+
 std::string JsonCursor::text() const {
     if (!is(JsonValue::Type::text) || value_->text.empty()) {
         expected("a text");

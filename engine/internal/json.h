@@ -51,6 +51,7 @@ class JsonCursor {
     /// Number in [lowest, highest].
     double number(double lowest, double highest) const;
     int integer(int lowest, int highest) const;
+    bool boolean() const;
     std::string text() const;  ///< not empty
     /// `count` numbers, each in [lowest, highest].
     std::vector<double> numbers(size_t count, double lowest, double highest) const;

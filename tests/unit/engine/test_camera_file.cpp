@@ -4,6 +4,7 @@
 #include <random>
 #include <string>
 
+#include "engine/camera.h"
 #include "engine/load.h"
 
 using namespace still;
@@ -94,4 +95,39 @@ TEST_CASE("camera_file: an unknown key gives a warning", "[unit][camera_file]") 
     REQUIRE(cameras);
     REQUIRE(cameras->warnings.size() == 1);
     CHECK(cameras->warnings[0].find("/frames/0/jiter: unknown key") != std::string::npos);
+}
+
+TEST_CASE("camera_file: what is written reads back as the same numbers", "[unit][camera_file]") {
+    const CameraPose pose{.eye = {1.1, -2.7, 1e-3}, .target = {0.3, 7, 1e5}, .fov_y_deg = 33.3};
+    CameraFile cameras{.width = 320, .height = 200};
+    cameras.frames.push_back(cameraFrame(pose, 0.1, 1234.5, 1.6));
+    cameras.frames.push_back(cameras.frames[0]);
+    cameras.frames[1].jitter_fx8 = {-128, 127};
+    cameras.frames[1].scene_frame = 17;
+    cameras.frames[1].cut = true;
+
+    const auto read = load(cameraFileText(cameras));
+    REQUIRE((read ? "" : read.error().message) == std::string());
+    CHECK(read->warnings.empty());
+    CHECK(read->width == 320);
+    CHECK(read->height == 200);
+    REQUIRE(read->frames.size() == 2);
+    for (size_t i = 0; i < 2; ++i) {
+        CHECK(read->frames[i].view == cameras.frames[i].view);
+        CHECK(read->frames[i].projection == cameras.frames[i].projection);
+        CHECK(read->frames[i].jitter_fx8 == cameras.frames[i].jitter_fx8);
+        CHECK(read->frames[i].scene_frame == cameras.frames[i].scene_frame);
+        CHECK(read->frames[i].cut == cameras.frames[i].cut);
+    }
+}
+
+TEST_CASE("camera_file: frame is a whole number from 0 on, cut is true or false",
+          "[unit][camera_file]") {
+    const std::string matrices = "\"view\":" + kUnit + ",\"proj\":" + kUnit;
+    CHECK(errorOf(oneFrame(matrices + ",\"frame\":-1")).find("/frames/0/frame") !=
+          std::string::npos);
+    CHECK(errorOf(oneFrame(matrices + ",\"frame\":1.5")).find("/frames/0/frame") !=
+          std::string::npos);
+    CHECK(errorOf(oneFrame(matrices + ",\"cut\":1")).find("expected true or false") !=
+          std::string::npos);
 }

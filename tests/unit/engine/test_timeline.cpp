@@ -133,10 +133,10 @@ TEST_CASE("timeline: a cut has no past", "[unit][timeline]") {
     CHECK_FALSE(cut.lighting_changed);
     CHECK(after.instances[0].transform_before == cut.instances[0].transform);
     CHECK(after.instances[0].moved);
-    CHECK(lastCut(scene, 9) == 0);
-    CHECK(lastCut(scene, 14) == 10);
-    CHECK(lastCut(scene, 15) == 15);
-    CHECK(lastCut(scene, 999) == 15);
+    CHECK(lastCut(scene, {}, 9) == 0);
+    CHECK(lastCut(scene, {}, 14) == 10);
+    CHECK(lastCut(scene, {}, 15) == 15);
+    CHECK(lastCut(scene, {}, 999) == 15);
 }
 
 TEST_CASE("timeline: intensities multiply the lights' colours", "[unit][timeline]") {
@@ -226,4 +226,63 @@ TEST_CASE("timeline: a camera file gives matrices, eye and jitter", "[unit][time
     file.frames.pop_back();
     CHECK(isStill(scene, choice));
     CHECK(own.eye != first.camera.eye);
+}
+
+namespace {
+
+Scene movingScene() {
+    Scene scene = twoBoxes();
+    scene.objects[0].tracks.translation.keys = {{0, {0, 0, 0}}, {10, {5, 0, 0}}};
+    return scene;
+}
+
+CameraFileFrame showing(int scene_frame, bool cut = false) {
+    return {.scene_frame = scene_frame, .cut = cut};
+}
+
+}  // namespace
+
+TEST_CASE("timeline: a camera file's frames show the instants that they name", "[unit][timeline]") {
+    const Scene scene = movingScene();
+    const CameraFile file{.frames = {showing(4), showing(5), showing(5), showing(9)}};
+    const CameraChoice choice{.file = &file};
+    const auto at = [&](int frame) { return frameStateAt(scene, choice, frame, 16, 9); };
+    const auto plain = [&](int frame) { return frameStateAt(scene, {}, frame, 16, 9); };
+
+    CHECK(at(0).cut);
+    CHECK(at(0).instances[0].transform == plain(4).instances[0].transform);
+    CHECK(at(1).instances[0].transform == plain(5).instances[0].transform);
+    CHECK(at(1).instances[0].transform_before == plain(4).instances[0].transform);
+    CHECK_FALSE(at(2).instances[0].moved);
+    CHECK(at(3).instances[0].transform_before == plain(5).instances[0].transform);
+    CHECK(at(3).instances[0].transform == plain(9).instances[0].transform);
+    CHECK_FALSE(at(7).instances[0].moved);  // beyond its end the last entry goes on
+}
+
+TEST_CASE("timeline: a camera file cuts where it says so and where it goes over a scene's cut",
+          "[unit][timeline]") {
+    Scene scene = movingScene();
+    scene.cuts = {6};
+    const CameraFile file{
+        .frames = {showing(4), showing(5, true), showing(6), showing(6), showing(3)}};
+    const CameraChoice choice{.file = &file};
+    const auto cut = [&](int frame) { return frameStateAt(scene, choice, frame, 16, 9).cut; };
+    CHECK(cut(1));
+    CHECK(cut(2));
+    CHECK_FALSE(cut(3));
+    CHECK(cut(4));
+    CHECK(lastCut(scene, choice, 1) == 1);
+    CHECK(lastCut(scene, choice, 3) == 2);
+    CHECK(lastCut(scene, choice, 9) == 4);
+}
+
+TEST_CASE("timeline: a moving scene is still in a camera file that shows one instant of it",
+          "[unit][timeline]") {
+    const Scene scene = movingScene();
+    CameraFile file{.frames = {showing(4, true)}};
+    CHECK(isStill(scene, {.file = &file}));
+    file.frames.push_back(showing(5));
+    CHECK_FALSE(isStill(scene, {.file = &file}));
+    file.frames = {{}};
+    CHECK_FALSE(isStill(scene, {.file = &file}));
 }

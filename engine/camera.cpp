@@ -1,0 +1,42 @@
+#include "engine/camera.h"
+
+#include <glm/geometric.hpp>
+
+#include "engine/det_math.h"
+#include "engine/internal/tracks.h"
+
+namespace still {
+
+glm::dmat4 viewMatrix(const CameraPose& pose) {
+    glm::dvec3 forward = pose.target - pose.eye;
+    forward = lengthOf(forward) > 0 ? unit(forward) : glm::dvec3(0, 0, -1);
+    glm::dvec3 side = glm::cross(forward, pose.up);
+    if (!(lengthOf(side) > 1e-9 * lengthOf(pose.up))) {
+        const bool along_z = forward.z > 0.9 || forward.z < -0.9;
+        side = glm::cross(forward, along_z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
+    }
+    side = unit(side);
+    const glm::dvec3 up = glm::cross(side, forward);
+    return {glm::dvec4(side.x, up.x, -forward.x, 0), glm::dvec4(side.y, up.y, -forward.y, 0),
+            glm::dvec4(side.z, up.z, -forward.z, 0),
+            glm::dvec4(-glm::dot(side, pose.eye), -glm::dot(up, pose.eye),
+                       glm::dot(forward, pose.eye), 1)};
+}
+
+glm::dmat4 perspectiveMatrix(double fov_y_deg, double aspect, double near, double far) {
+    const double zoom = 1 / det::tanDegrees(fov_y_deg / 2);
+    glm::dmat4 projection(0.0);
+    projection[0][0] = zoom / aspect;
+    projection[1][1] = zoom;
+    projection[2][2] = (far + near) / (near - far);
+    projection[2][3] = -1;
+    projection[3][2] = 2 * far * near / (near - far);
+    return projection;
+}
+
+CameraFileFrame cameraFrame(const CameraPose& pose, double near, double far, double aspect) {
+    return {.view = viewMatrix(pose),
+            .projection = perspectiveMatrix(pose.fov_y_deg, aspect, near, far)};
+}
+
+}  // namespace still

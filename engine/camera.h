@@ -1,0 +1,26 @@
+#pragma once
+// Poses to matrices, and camera files out: for programs whose camera is moved by hand. They give
+// each frame that they draw an entry of a CameraFile, which CameraChoice::file points to and which
+// may grow between frames, so that what was seen can be rendered again, byte for byte.
+
+#include <string>
+
+#include "engine/scene.h"
+
+namespace still {
+
+/// World to camera space, looking along −z. A pose whose target is its eye looks along −z; an `up`
+/// along the view is replaced by +y, or by +z where that lies along it, too.
+glm::dmat4 viewMatrix(const CameraPose& pose);
+
+/// OpenGL: z = −near is mapped to −w, z = −far to w. 0 < fov_y_deg < 180, aspect = width / height,
+/// 0 < near < far.
+glm::dmat4 perspectiveMatrix(double fov_y_deg, double aspect, double near, double far);
+
+/// Both, as the timeline would make them of the same pose.
+CameraFileFrame cameraFrame(const CameraPose& pose, double near, double far, double aspect);
+
+/// What loadCameraFile() reads back as the same numbers.
+std::string cameraFileText(const CameraFile& cameras);
+
+}  // namespace still
