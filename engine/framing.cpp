@@ -100,4 +100,13 @@ void frameScene(Scene& scene, glm::dvec3 direction, double aspect) {
     camera.near = std::max((distance - radius) * 0.9, camera.far * 1e-4);
 }
 
+void frameForAspect(Scene& scene, int width, int height) {
+    const Camera& camera = scene.camera;
+    // An empty scene has no camera keys.
+    if (scene.automatic_camera && !camera.eye.keys.empty() && !camera.target.keys.empty()) {
+        frameScene(scene, camera.eye.keys[0].value - camera.target.keys[0].value,
+                   double(width) / height);
+    }
+}
+
 }  // namespace still

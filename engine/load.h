@@ -26,4 +26,8 @@ Result<CameraFile> loadCameraFile(const std::filesystem::path& file);
 /// 5 % margin, seen from `direction` (from the scene towards the eye). Aspect = width / height.
 void frameScene(Scene& scene, glm::dvec3 direction, double aspect);
 
+/// The same from where an automatic camera stands, for pictures that are not 16:9; other cameras
+/// stay as they are.
+void frameForAspect(Scene& scene, int width, int height);
+
 }  // namespace still

@@ -80,7 +80,7 @@ Outcome<std::optional<Scene>> openMoving(const Plan& plan, const std::string& na
         if (motion == kBenchMotions[0]) {
             printWarnings(scene.warnings);
         }
-        frameForAspect(scene, {plan.settings.width, plan.settings.height});
+        frameForAspect(scene, plan.settings.width, plan.settings.height);
         if (plan.cameras) {
             scene.camera_file = plan.cameras;
         }

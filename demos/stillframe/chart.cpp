@@ -12,6 +12,7 @@
 #include "demos/stillframe/report.h"
 #include "demos/stillframe/scene_source.h"
 #include "demos/stillframe/whole_file.h"
+#include "engine/load.h"
 
 namespace still::command {
 namespace {
@@ -47,7 +48,7 @@ Outcome<void> openScenes(const ChartOptions& options, std::list<ChartScene>& sce
             return tl::make_unexpected(opened.error());
         }
         printWarnings(opened->warnings);
-        frameForAspect(*opened, options.resolution);
+        frameForAspect(*opened, options.resolution.width, options.resolution.height);
         std::string name = plainName(text);
         const auto taken = [&](const ChartScene& scene) { return scene.name == name; };
         for (int i = 2; std::any_of(scenes.begin(), scenes.end(), taken); ++i) {

@@ -123,7 +123,7 @@ Outcome<void> settleView(Job& job) {
     settings.width = size.width;
     settings.height = size.height;
     job.frames = options.frames.value_or(job.frames);
-    frameForAspect(job.scene, size);
+    frameForAspect(job.scene, size.width, size.height);
     settings.camera.orbit_frames = job.frames;
     return {};
 }

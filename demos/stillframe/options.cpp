@@ -7,8 +7,6 @@
 namespace still::command {
 namespace {
 
-constexpr int kMaxSsaaSamples = 65536;
-
 /// The whole of `text` as a decimal number without sign.
 std::optional<int> wholeNumber(std::string_view text) {
     int value = 0;
@@ -30,31 +28,12 @@ std::string listed(const Range& range, NameOf&& nameOf) {
     return list;
 }
 
-Outcome<AntiAliasingChoice> presetChoice(const std::string& name) {
-    if (const TaaPreset* preset = findPreset(name)) {
-        return AntiAliasingChoice{AntiAliasing::taa, 1, name, preset->policy};
-    }
-    return usageError("--anti-aliasing: taa:" + name + ": the presets are " +
-                      listed(taaPresets(), [](const TaaPreset& preset) { return preset.name; }));
-}
-
-/// Applies one "key=value".
-Outcome<void> applyTaaSetting(std::string_view setting, TaaPolicy& policy) {
-    const size_t equals = setting.find('=');
-    const std::string_view name = setting.substr(0, equals);
-    for (const TaaPolicyKey& key : taaPolicyKeys()) {
-        if (key.name != name) {
-            continue;
-        }
-        if (equals != std::string_view::npos &&
-            setPolicyKey(policy, name, setting.substr(equals + 1))) {
-            return {};
-        }
-        return usageError("--taa: " + std::string(setting) + ": " + std::string(name) + " takes " +
-                          std::string(key.values));
-    }
-    return usageError("--taa: " + std::string(setting) + ": expected KEY=VALUE with a key of " +
-                      listed(taaPolicyKeys(), [](const TaaPolicyKey& key) { return key.name; }));
+/// A value that does not fit is an error of the option's.
+template <class T>
+Outcome<T> ofOption(const char* option, Result<T> result) {
+    return std::move(result).map_error([&](const Error& error) {
+        return Failure{ExitCode::usage, option + (": " + error.message)};
+    });
 }
 
 constexpr DumpPlane kDumpPlanes[] = {DumpPlane::color,  DumpPlane::depth, DumpPlane::normal,
@@ -86,40 +65,11 @@ Outcome<Size> parseResolution(const std::string& text) {
 }
 
 Outcome<AntiAliasingChoice> parseAntiAliasing(const std::string& text) {
-    constexpr std::string_view kSsaa = "ssaa:", kTaa = "taa:";
-    if (text == "none") {
-        return AntiAliasingChoice{AntiAliasing::none, 1, {}, {}};
-    }
-    if (text == "fxaa") {
-        return AntiAliasingChoice{AntiAliasing::fxaa, 1, {}, {}};
-    }
-    if (text == "taa") {
-        return presetChoice("still");
-    }
-    if (text.starts_with(kTaa)) {
-        return presetChoice(text.substr(kTaa.size()));
-    }
-    if (text.starts_with(kSsaa)) {
-        const auto samples = wholeNumber(std::string_view(text).substr(kSsaa.size()));
-        if (samples && *samples >= 1 && *samples <= kMaxSsaaSamples) {
-            return AntiAliasingChoice{AntiAliasing::ssaa, *samples, {}, {}};
-        }
-    }
-    return usageError("--anti-aliasing: " + text +
-                      ": expected none, taa, taa:PRESET, fxaa or ssaa:N with N from 1 to " +
-                      std::to_string(kMaxSsaaSamples));
+    return ofOption("--anti-aliasing", still::parseAntiAliasing(text));
 }
 
 Outcome<TaaPolicy> parseTaaSettings(const std::string& text, TaaPolicy policy) {
-    for (size_t begin = 0; begin < text.size();) {
-        const size_t end = std::min(text.find(',', begin), text.size());
-        const auto setting = std::string_view(text).substr(begin, end - begin);
-        if (auto applied = applyTaaSetting(setting, policy); !applied) {
-            return tl::make_unexpected(applied.error());
-        }
-        begin = end + 1;
-    }
-    return policy;
+    return ofOption("--taa", still::parseTaaSettings(text, policy));
 }
 
 std::string dumpName(DumpPlane plane) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "demos/stillframe/outcome.h"
+#include "engine/anti_aliasing.h"
 #include "engine/frame_loop.h"
 
 namespace still::command {
@@ -47,16 +48,8 @@ struct CompareOptions {
 /// "1280x720" or "1280,720", each side 1 … kMaxTargetSize.
 Outcome<Size> parseResolution(const std::string& text);
 
-struct AntiAliasingChoice {
-    AntiAliasing mode = AntiAliasing::taa;
-    int ssaa_samples = 1;
-    std::string preset;  ///< with AntiAliasing::taa
-    TaaPolicy policy;    ///< the preset's
-};
-/// "none", "taa", "taa:PRESET", "fxaa" or "ssaa:N" with N = 1 … 65536.
+/// See engine/anti_aliasing.h.
 Outcome<AntiAliasingChoice> parseAntiAliasing(const std::string& text);
-
-/// `policy` with the settings "key=value,key=value"; empty text changes nothing.
 Outcome<TaaPolicy> parseTaaSettings(const std::string& text, TaaPolicy policy);
 
 /// Planes that --dump can write.

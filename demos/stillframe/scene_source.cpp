@@ -32,14 +32,4 @@ void printWarnings(const std::vector<std::string>& warnings) {
     }
 }
 
-void frameForAspect(Scene& scene, Size size) {
-    // An empty scene has no camera keys.
-    if (scene.automatic_camera && !scene.camera.eye.keys.empty() &&
-        !scene.camera.target.keys.empty()) {
-        const glm::dvec3 direction =
-            scene.camera.eye.keys[0].value - scene.camera.target.keys[0].value;
-        frameScene(scene, direction, double(size.width) / size.height);
-    }
-}
-
 }  // namespace still::command

@@ -17,7 +17,4 @@ Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& c
 /// Each on a line of standard error.
 void printWarnings(const std::vector<std::string>& warnings);
 
-/// The loader frames for 16:9 and leaves other shapes to us.
-void frameForAspect(Scene& scene, Size size);
-
 }  // namespace still::command

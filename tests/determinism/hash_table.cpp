@@ -1,6 +1,5 @@
 #include "tests/determinism/hash_table.h"
 
-#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -9,38 +8,10 @@
 namespace still::determinism {
 namespace {
 
-constexpr const char* kNames[kStages] = {"depth", "id", "normal", "motion", "color", "output"};
-
-template <class T>
-ImageView<const T> tileOf(ImageView<const T> plane, int tile_x, int tile_y) {
-    const int x0 = tile_x * kTileSize, y0 = tile_y * kTileSize;
-    return {plane.row(y0) + x0, std::min(kTileSize, plane.width - x0),
-            std::min(kTileSize, plane.height - y0), plane.stride};
-}
-
-/// Hash of several planes of one size, as a whole and by tile.
-template <class... T>
-StageHash hashPlanes(ImageView<const T>... planes) {
-    const auto combine = [](auto... hashes) {
-        uint64_t sum = 0;
-        ((sum = sum * 3 + hashes), ...);
-        return sum;
-    };
-    StageHash hash;
-    hash.whole = combine(hashPlane(planes)...);
-    const int width = std::max({planes.width...}), height = std::max({planes.height...});
-    for (int y = 0; y * kTileSize < height; ++y) {
-        for (int x = 0; x * kTileSize < width; ++x) {
-            hash.tiles.push_back(uint16_t(combine(hashPlane(tileOf(planes, x, y))...)));
-        }
-    }
-    return hash;
-}
-
-std::string lineOf(const std::string& scene, size_t frame, int stage, const StageHash& hash) {
+std::string lineOf(const std::string& scene, size_t frame, Stage stage, const StageHash& hash) {
     std::string line =
-        scene + " " + std::to_string(frame) + " " + kNames[stage] + " " + hex(hash.whole) + " ";
-    for (uint16_t tile : hash.tiles) {
+        scene + " " + std::to_string(frame) + " " + name(stage) + " " + hex(hash.whole) + " ";
+    for (uint32_t tile : hash.tiles) {
         line += hex(tile).substr(12);
     }
     return line;
@@ -56,55 +27,45 @@ bool parseLine(const std::string& line, std::string& scene, size_t& frame, int& 
         (whole + tiles).find_first_not_of("0123456789abcdef") != std::string::npos) {
         return false;
     }
-    stage = int(std::find(kNames, kNames + kStages, stage_name) - kNames);
+    for (stage = 0; stage < kStages && stage_name != name(Stage(stage)); ++stage) {
+    }
     hash.whole = std::stoull(whole, nullptr, 16);
     hash.tiles.clear();
     for (size_t k = 0; k < tiles.size(); k += 4) {
-        hash.tiles.push_back(uint16_t(std::stoul(tiles.substr(k, 4), nullptr, 16)));
+        hash.tiles.push_back(uint32_t(std::stoul(tiles.substr(k, 4), nullptr, 16)));
     }
     return stage < kStages;
 }
 
 }  // namespace
 
-const char* name(Stage stage) {
-    return kNames[int(stage)];
-}
-
 FrameRecord hashOf(const FrameResult& frame) {
-    const GBuffer& g = *frame.gbuffer;
-    FrameRecord record;
-    record[size_t(Stage::depth)] = hashPlanes(g.depth.view());
-    record[size_t(Stage::id)] = hashPlanes(g.id.view());
-    record[size_t(Stage::normal)] = hashPlanes(g.normal.view());
-    record[size_t(Stage::motion)] = hashPlanes(g.motion.view(), g.depth_before.view());
-    record[size_t(Stage::color)] = hashPlanes(g.red.view(), g.green.view(), g.blue.view());
-    record[size_t(Stage::output)] = hashPlanes(frame.output);
+    FrameRecord record = hashStages(frame);
+    record[size_t(Stage::linear)] = {};
+    for (StageHash& hash : record) {
+        for (uint32_t& tile : hash.tiles) {
+            tile &= 0xFFFF;
+        }
+    }
     return record;
 }
 
-std::string firstDifference(const FrameRecord& expected, const FrameRecord& found, int tiles_x) {
-    for (size_t stage = 0; stage < kStages; ++stage) {
-        const StageHash &a = expected[stage], &b = found[stage];
-        if (a == b) {
-            continue;
-        }
-        const size_t count = std::min(a.tiles.size(), b.tiles.size());
-        const auto tile = size_t(
-            std::mismatch(a.tiles.begin(), a.tiles.begin() + ptrdiff_t(count), b.tiles.begin())
-                .first -
-            a.tiles.begin());
-        std::ostringstream text;
-        text << "stage " << kNames[stage] << ", ";
-        if (tile < count) {
-            text << "tile (" << tile % size_t(tiles_x) << ", " << tile / size_t(tiles_x) << ")";
-        } else {
-            text << "no single tile";
-        }
-        text << ": " << hex(b.whole) << ", expected " << hex(a.whole);
-        return text.str();
+std::string differenceLine(const FrameRecord& expected, const FrameRecord& found, int tiles_x) {
+    const auto difference = firstDifference(expected, found);
+    if (!difference) {
+        return {};
     }
-    return {};
+    std::ostringstream text;
+    text << "stage " << name(difference->stage) << ", ";
+    if (difference->tiles.empty()) {
+        text << "no single tile";
+    } else {
+        const int tile = difference->tiles.front();
+        text << "tile (" << tile % tiles_x << ", " << tile / tiles_x << ")";
+    }
+    const auto stage = size_t(difference->stage);
+    text << ": " << hex(found[stage].whole) << ", expected " << hex(expected[stage].whole);
+    return text.str();
 }
 
 Result<Table> readTable(const std::filesystem::path& file) {
@@ -148,8 +109,10 @@ Result<void> writeTable(const std::filesystem::path& file, const Table& table) {
     for (const SceneRecord& record : table) {
         for (size_t frame = 0; frame < record.frames.size(); ++frame) {
             for (int stage = 0; stage < kStages; ++stage) {
-                out << lineOf(record.scene, frame, stage, record.frames[frame][size_t(stage)])
-                    << "\n";
+                const StageHash& hash = record.frames[frame][size_t(stage)];
+                if (!hash.tiles.empty()) {
+                    out << lineOf(record.scene, frame, Stage(stage), hash) << "\n";
+                }
             }
         }
     }

@@ -80,7 +80,7 @@ bool differs(const Case& c, const SceneRecord& expected, const SceneRecord& foun
     const int tiles_x = (c.width + kTileSize - 1) / kTileSize;
     for (size_t frame = 0; frame < found.frames.size(); ++frame) {
         const std::string text =
-            firstDifference(expected.frames[frame], found.frames[frame], tiles_x);
+            differenceLine(expected.frames[frame], found.frames[frame], tiles_x);
         if (!text.empty()) {
             std::fprintf(stderr, "%s, frame %zu, %s\n    with %s\n", c.scene, frame, text.c_str(),
                          configuration.text().c_str());

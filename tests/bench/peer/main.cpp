@@ -13,6 +13,7 @@
 #include "demos/stillframe/peak_memory.h"
 #include "demos/stillframe/png.h"
 #include "demos/stillframe/scene_source.h"
+#include "engine/load.h"
 #include "tests/bench/peer/check.h"
 #include "tests/bench/peer/measure.h"
 
@@ -213,7 +214,7 @@ int run(int argc, char** argv) {
     if (!scene) {
         return report(scene.error());
     }
-    command::frameForAspect(*scene, *size);
+    frameForAspect(*scene, size->width, size->height);
     const Driver driver = options.driver == "llvmpipe" ? Driver::llvmpipe : Driver::swiftshader;
     const Result<Gl> gl = openGl(driver, options.libraries, options.threads);
     if (!gl) {
