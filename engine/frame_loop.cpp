@@ -88,6 +88,7 @@ struct FrameLoop::State {
     Image<uint8_t> confidence;  ///< for sharpening only
     StageTimes times;
     RasterCounters counters;
+    SampleOffset jitter;            ///< of the sample that was rasterized last
     int resolved_frame = kNoFrame;  ///< the frame that the TAA history ends with
     bool shown = false;             ///< the output shows the history as it is
     /// What lies far ahead has moved by this much over the picture since the camera set off, 1/256
@@ -183,6 +184,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                          .jitter_x_fx8 = offset.x_fx8,
                          .jitter_y_fx8 = offset.y_fx8,
                          .sample = sample};
+    jitter = offset;
     std::span<const uint8_t> wanted;
     StageTimes sample_times;
     timed(sample_times.transform_bin_ms, [&] {
@@ -429,6 +431,7 @@ FrameResult FrameLoop::State::result() const {
     result.output = output.view();
     result.linear = colour();
     result.gbuffer = in_parts && settings.fresh_gbuffer ? &fresh : &gbuffer;
+    result.jitter = jitter;
     result.times = times;
     if (temporal() && gathers()) {
         result.sample_count = taa.sampleCount();
@@ -482,6 +485,27 @@ void FrameLoop::resize(int width, int height) {
 
 const RasterCounters& FrameLoop::counters() const {
     return state_->counters;
+}
+
+std::optional<PixelStory> FrameLoop::story(int x, int y) const {
+    const State& s = *state_;
+    const bool inside = x >= 0 && x < s.gbuffer.width() && y >= 0 && y < s.gbuffer.height();
+    if (!s.temporal() || !inside) {
+        return std::nullopt;
+    }
+    return s.gathers() ? s.taa.story(s.gbuffer, x, y) : s.laboratory.story(s.gbuffer, x, y);
+}
+
+std::vector<TileWork> FrameLoop::tileWork() const {
+    const State& s = *state_;
+    if (s.temporal() && s.gathers()) {
+        return s.taa.tileWork();
+    }
+    return std::vector<TileWork>(s.gbuffer.tiles.size(), {.drawn = true, .resolved = true});
+}
+
+void FrameLoop::overdraw(ImageView<uint16_t> out) const {
+    state_->rasterizer.overdraw(out, state_->workers);
 }
 
 }  // namespace still

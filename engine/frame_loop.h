@@ -3,11 +3,15 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <vector>
 
+#include "engine/jitter.h"
 #include "engine/scene.h"
 #include "engine/timeline.h"
 #include "postfx/encode.h"
 #include "postfx/policy.h"
+#include "postfx/story.h"
 #include "postfx/taa.h"
 #include "rasterizer/rasterizer.h"
 
@@ -63,6 +67,7 @@ struct FrameResult {
     /// pixel (Method::gather), or trust in history.
     ImageView<const uint8_t> confidence;
     int confidence_full = 255;
+    SampleOffset jitter;  ///< where the sample lies that was rasterized last
     StageTimes times;
     /// Method::gather only: further frames of a still scene will not differ.
     bool converged = false;
@@ -87,6 +92,17 @@ class FrameLoop {
 
     /// Of the sample that was rasterized last for the last frame; all zero when it needed none.
     const RasterCounters& counters() const;
+
+    // What the last frame did, told when asked for: postfx/story.h. Valid as long as its result.
+
+    /// None without AntiAliasing::taa, before the first frame and outside the picture.
+    std::optional<PixelStory> story(int x, int y) const;
+    /// Of each tile, row by row; empty before the first frame. Without Method::gather every tile is
+    /// drawn and resolved in every frame.
+    std::vector<TileWork> tileWork() const;
+    /// Triangles at each pixel's sample: Rasterizer::overdraw. A frame that needed no sample shows
+    /// those of the last one that was rasterized. `out` has the last frame's size.
+    void overdraw(ImageView<uint16_t> out) const;
 
   private:
     struct State;

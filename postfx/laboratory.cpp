@@ -174,6 +174,16 @@ ColourPlanes Laboratory::colour() const {
     return {state_->shown[0].view(), state_->shown[1].view(), state_->shown[2].view()};
 }
 
+PixelStory Laboratory::story(const GBuffer& gbuffer, int x, int y) const {
+    const State& s = *state_;
+    PixelStory story{.source = PixelSource::blended, .x = x, .y = y};
+    const auto at = [&](const auto& plane) { return int(plane.at(x, y)); };
+    story.raw = {at(gbuffer.red), at(gbuffer.green), at(gbuffer.blue)};
+    story.output = {at(s.shown[0]), at(s.shown[1]), at(s.shown[2])};
+    story.confidence = at(s.confidence);
+    return story;
+}
+
 ImageView<const uint8_t> Laboratory::confidence() const {
     return state_->confidence.view();
 }

@@ -1,12 +1,13 @@
 #pragma once
 // The published methods: history is one resampled image, blended with every new frame
-// (Method::recursive). Integer from end to end; presets run compiled for their own policy, any other
-// policy runs through the generic kernel, with the same bytes.
+// (Method::recursive). Integer from end to end; presets run compiled for their own policy, any
+// other policy runs through the generic kernel, with the same bytes.
 
 #include <cstdint>
 #include <memory>
 
 #include "postfx/policy.h"
+#include "postfx/story.h"
 #include "postfx/taa.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/simd.h"
@@ -38,6 +39,10 @@ class Laboratory {
     ColourPlanes colour() const;
     /// 0 = only this frame's sample … 255 = history fully trusted; valid until the next resolve().
     ImageView<const uint8_t> confidence() const;
+
+    /// What the last resolve() did at a pixel of the picture. `gbuffer` is the one that it was
+    /// given, unchanged since.
+    PixelStory story(const GBuffer& gbuffer, int x, int y) const;
 
   private:
     struct State;

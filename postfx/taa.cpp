@@ -60,6 +60,7 @@ struct TileMemory {
     bool changed = true;    ///< the last frame changed the picture
     bool tested = true;     ///< something moved or changed here in this frame
     bool keeps = true;      ///< this frame's samples go into the ring
+    bool adds = false;      ///< … and were added to its sums
     int quiet = 0;          ///< frames kept since it was tested, up to the ring's length
 };
 
@@ -94,7 +95,9 @@ struct Taa::State {
     std::vector<uint32_t> turning;     ///< Job::turning; empty: null
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
-    bool first = true;  ///< no frame was resolved since the last reset
+    bool first = true;         ///< no frame was resolved since the last reset
+    bool shows_first = false;  ///< the image is a first frame's …
+    bool gathers = false;      ///< … or was gathered where it is not settled
     SpatialFilter spatial;
 
     TileRect rectOf(int tile) const {
@@ -300,6 +303,7 @@ void Taa::State::noteJitter(SlotPlanes& slot) const {
 
 void Taa::State::keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile) {
     TileMemory& memory = tiles[size_t(tile)];
+    memory.adds = false;
     if (memory.keeps) {
         kernels.record(job, rectOf(tile));
         memory.quiet = std::min(memory.quiet + 1, int(ring.size()));
@@ -316,7 +320,7 @@ void Taa::State::keepAndSum(const Job& job, const taa::TileKernels& kernels, int
     }
     const taa::SumsResult result = kernels.accumulate(
         job, rectOf(tile), memory.tested ? Stillness::tested : Stillness::all, !memory.summed);
-    memory.summed = true;
+    memory.summed = memory.adds = true;
     memory.finished = result.finished;
     memory.settled = result.settled;
     memory.changed = result.changed || !result.settled;
@@ -342,8 +346,9 @@ bool Taa::rest(const TaaSettings& settings) {
     }
     s.started.noteRest();
     for (TileMemory& tile : s.tiles) {
-        tile.changed = false;
+        tile.changed = tile.keeps = tile.adds = false;
     }
+    s.shows_first = s.gathers = false;
     return true;
 }
 
@@ -392,6 +397,8 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     }
     s.sample_cap = settings.sample_cap;
     s.first = false;
+    s.shows_first = first && frame.looked_at;
+    s.gathers = !first && frame.looked_at;
     if (!frame.looked_at) {
         return;
     }
@@ -423,6 +430,36 @@ ColourPlanes Taa::colour() const {
 
 ImageView<const uint8_t> Taa::sampleCount() const {
     return state_->shown_count.view();
+}
+
+std::vector<TileWork> Taa::tileWork() const {
+    const State& s = *state_;
+    std::vector<TileWork> work;
+    for (const TileMemory& tile : s.tiles) {
+        const bool gathered = s.gathers && !tile.settled;
+        work.push_back({.drawn = tile.keeps || tile.adds,
+                        .recorded = tile.keeps,
+                        .summed = tile.adds,
+                        .resolved = s.shows_first || gathered,
+                        .finished = tile.summed && tile.finished});
+    }
+    return work;
+}
+
+PixelStory Taa::story(const GBuffer& gbuffer, int x, int y) const {
+    const State& s = *state_;
+    PixelStory story{.x = x, .y = y};
+    const auto at = [&](const auto& plane) { return int(plane.at(x, y)); };
+    const TileMemory& tile = s.tiles[size_t(y / kTileSize * s.tiles_x + x / kTileSize)];
+    const bool mean = tile.summed && at(s.count) >= std::min(taa::kSettled, s.sample_cap);
+    story.source = s.shows_first ? PixelSource::first
+                   : mean        ? PixelSource::mean
+                                 : PixelSource::gathered;
+    story.raw = {at(gbuffer.red), at(gbuffer.green), at(gbuffer.blue)};
+    story.output = {at(s.shown[0]), at(s.shown[1]), at(s.shown[2])};
+    story.count = at(s.shown_count);
+    story.finished = mean && at(s.count) >= s.sample_cap;
+    return story;
 }
 
 bool Taa::converged() const {

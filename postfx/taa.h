@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "postfx/story.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/simd.h"
 #include "rasterizer/workers.h"
@@ -78,6 +80,12 @@ class Taa {
     ImageView<const uint8_t> sampleCount() const;
     /// True when every pixel has sample_cap samples and the last frame changed nothing.
     bool converged() const;
+
+    /// What the last resolve() or rest() did at a pixel of the picture. `gbuffer` is the one that
+    /// resolve() was given last, unchanged since.
+    PixelStory story(const GBuffer& gbuffer, int x, int y) const;
+    /// What it did for the tiles, row by row.
+    std::vector<TileWork> tileWork() const;
 
   private:
     struct State;

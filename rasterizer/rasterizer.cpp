@@ -3,6 +3,7 @@
 #include <cassert>
 #include <vector>
 
+#include "rasterizer/internal/overdraw.h"
 #include "rasterizer/internal/tile.h"
 
 namespace still {
@@ -154,6 +155,16 @@ void Rasterizer::rasterize(GBuffer& out, Workers& workers, std::span<const uint8
     for (const auto& each : s.scratch) {
         s.counters += each->counters;
     }
+}
+
+void Rasterizer::overdraw(ImageView<uint16_t> out, Workers& workers) const {
+    const int tiles_x = (out.width + kTileSize - 1) / kTileSize;
+    const int tiles_y = (out.height + kTileSize - 1) / kTileSize;
+    workers.parallelFor(tiles_x * tiles_y, 1, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) {
+            internal::countOverdraw(state_->bins, i % tiles_x, i / tiles_x, out);
+        }
+    });
 }
 
 const RasterCounters& Rasterizer::counters() const {

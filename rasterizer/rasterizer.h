@@ -100,6 +100,11 @@ class Rasterizer {
 
     const RasterCounters& counters() const;
 
+    /// Writes for each pixel how many triangles hold its sample, hidden ones and holes of alpha
+    /// tests included, in the frame that was binned last; at most 65535. `out` has that frame's
+    /// size.
+    void overdraw(ImageView<uint16_t> out, Workers& workers) const;
+
   private:
     struct State;
     std::unique_ptr<State> state_;
