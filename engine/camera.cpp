@@ -34,9 +34,27 @@ glm::dmat4 perspectiveMatrix(double fov_y_deg, double aspect, double near, doubl
     return projection;
 }
 
+glm::dmat4 orthographicMatrix(double half_height, double aspect, double near, double far) {
+    glm::dmat4 projection(1.0);
+    projection[0][0] = 1 / (half_height * aspect);
+    projection[1][1] = 1 / half_height;
+    projection[2][2] = 1 / (near - far);
+    projection[3][2] = far / (near - far);
+    return projection;
+}
+
 CameraFileFrame cameraFrame(const CameraPose& pose, double near, double far, double aspect) {
-    return {.view = viewMatrix(pose),
-            .projection = perspectiveMatrix(pose.fov_y_deg, aspect, near, far)};
+    CameraFileFrame frame;
+    frame.view = viewMatrix(pose);
+    if (!pose.orthographic) {
+        frame.projection = perspectiveMatrix(pose.fov_y_deg, aspect, near, far);
+        return frame;
+    }
+    const double distance = lengthOf(pose.target - pose.eye);
+    const double slope = det::tanDegrees(pose.fov_y_deg / 2);
+    frame.projection =
+        orthographicMatrix((distance > 0 ? distance : 1.0) * slope, aspect, near, far);
+    return frame;
 }
 
 }  // namespace still

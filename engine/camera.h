@@ -17,7 +17,13 @@ glm::dmat4 viewMatrix(const CameraPose& pose);
 /// 0 < near < far.
 glm::dmat4 perspectiveMatrix(double fov_y_deg, double aspect, double near, double far);
 
-/// Both, as the timeline would make them of the same pose.
+/// CameraPose::orthographic: z = −near is mapped to −1 and z = −far to 0, half way to 1. Reversed Z
+/// is then 0.5 … 1 between them, one power of two, in which logDepth16 has even steps, as a depth
+/// that is linear needs them. half_height > 0 is half of what the picture shows; near < far, of any
+/// sign.
+glm::dmat4 orthographicMatrix(double half_height, double aspect, double near, double far);
+
+/// View and projection, as the timeline would make them of the same pose.
 CameraFileFrame cameraFrame(const CameraPose& pose, double near, double far, double aspect);
 
 /// What loadCameraFile() reads back as the same numbers.

@@ -26,13 +26,15 @@ struct Basis {
     }
 };
 
-Basis basisTowards(const glm::dvec3& direction) {
+Basis basisTowards(const glm::dvec3& direction, const glm::dvec3& world_up) {
     const glm::dvec3 forward = -unit(direction);
-    const bool vertical = forward.y > 0.999 || forward.y < -0.999;
-    const glm::dvec3 side =
-        unit(glm::cross(forward, vertical ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0)));
+    const double steepness = glm::dot(forward, world_up);
+    const bool vertical = steepness > 0.999 || steepness < -0.999;
+    const bool along_z = world_up.z > 0.9 || world_up.z < -0.9;
+    const glm::dvec3 ahead = along_z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+    const glm::dvec3 side = unit(glm::cross(forward, vertical ? ahead : world_up));
     const glm::dvec3 up = glm::cross(side, forward);
-    return {side, up, forward, vertical ? up : glm::dvec3(0, 1, 0)};
+    return {side, up, forward, vertical ? up : world_up};
 }
 
 /// Calls visit(world position) for every vertex of frame 0.
@@ -66,11 +68,12 @@ struct Silhouette {
 
 }  // namespace
 
-void frameScene(Scene& scene, glm::dvec3 direction, double aspect) {
-    const Basis basis = basisTowards(direction);
+void frameScene(Scene& scene, glm::dvec3 direction, double aspect, glm::dvec3 up) {
+    const Basis basis = basisTowards(direction, unit(up));
     const double fov_deg = valueAt(scene.camera.fov_y_deg, 0, kDefaultFovDeg);
     const double slope_y = det::tanDegrees(fov_deg / 2) * (1 - 2 * kMargin);
     const double slope_x = slope_y * aspect;
+    Camera& camera = scene.camera;
     Silhouette outline;
     forEachVertex(scene,
                   [&](const glm::dvec3& p) { outline.add(basis.toCamera(p), slope_x, slope_y); });
@@ -79,25 +82,35 @@ void frameScene(Scene& scene, glm::dvec3 direction, double aspect) {
     }
     // A scene thinner than this (a single point, a line towards the eye) gets a little distance.
     const double size = std::max(lengthOf(outline.max - outline.min), 1e-6);
-    const double eye_z =
+    const glm::dvec3 middle = (outline.min + outline.max) * 0.5;
+    glm::dvec3 eye{
+        (outline.right - outline.left) / 2, (outline.top - outline.bottom) / 2,
         std::min({-(outline.right + outline.left) / (2 * slope_x),
-                  -(outline.top + outline.bottom) / (2 * slope_y), outline.min.z - 0.002 * size});
-    const glm::dvec3 eye{(outline.right - outline.left) / 2, (outline.top - outline.bottom) / 2,
-                         eye_z};
-    const glm::dvec3 target{eye.x, eye.y, (outline.min.z + outline.max.z) / 2};
+                  -(outline.top + outline.bottom) / (2 * slope_y), outline.min.z - 0.002 * size})};
+    if (camera.orthographic) {  // what the box fills at the target, wherever the eye then is
+        const double half_width = (outline.max.x - outline.min.x) / 2;
+        const double half_height = (outline.max.y - outline.min.y) / 2;
+        const double distance =
+            std::max({half_width / slope_x, half_height / slope_y, 0.002 * size});
+        eye = {middle.x, middle.y, middle.z - distance};
+    }
+    const glm::dvec3 target{eye.x, eye.y, middle.z};
     // From the farthest vertex, seen from the target: an orbit around it stays inside.
     double radius = 0;
     forEachVertex(scene, [&](const glm::dvec3& p) {
         radius = std::max(radius, lengthOf(basis.toCamera(p) - target));
     });
     const double distance = target.z - eye.z;
-    Camera& camera = scene.camera;
     camera.eye = {{{0, basis.toWorld(eye)}}};
     camera.target = {{{0, basis.toWorld(target)}}};
     camera.up = {{{0, basis.camera_up}}};
     camera.fov_y_deg = {{{0, fov_deg}}};
     camera.far = (distance + radius) * 1.01;
     camera.near = std::max((distance - radius) * 0.9, camera.far * 1e-4);
+    if (camera.orthographic) {
+        camera.near = distance - radius * 1.01;
+        camera.far = distance + radius * 1.01;
+    }
 }
 
 void frameForAspect(Scene& scene, int width, int height) {
@@ -105,7 +118,7 @@ void frameForAspect(Scene& scene, int width, int height) {
     // An empty scene has no camera keys.
     if (scene.automatic_camera && !camera.eye.keys.empty() && !camera.target.keys.empty()) {
         frameScene(scene, camera.eye.keys[0].value - camera.target.keys[0].value,
-                   double(width) / height);
+                   double(width) / height, valueAt(camera.up, 0, glm::dvec3(0, 1, 0)));
     }
 }
 

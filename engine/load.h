@@ -24,7 +24,7 @@ Result<CameraFile> loadCameraFile(const std::filesystem::path& file);
 
 /// Sets eye, target, near and far so that the projected bounds of frame 0 fill the picture with a
 /// 5 % margin, seen from `direction` (from the scene towards the eye). Aspect = width / height.
-void frameScene(Scene& scene, glm::dvec3 direction, double aspect);
+void frameScene(Scene& scene, glm::dvec3 direction, double aspect, glm::dvec3 up = {0, 1, 0});
 
 /// The same from where an automatic camera stands, for pictures that are not 16:9; other cameras
 /// stay as they are.

@@ -21,6 +21,17 @@ glm::dvec3 unit(const glm::dvec3& v) {
     return {v.x / length, v.y / length, v.z / length};
 }
 
+glm::dvec3 originOf(const glm::dmat4& affine) {
+    const glm::dvec3 x(affine[0]), y(affine[1]), z(affine[2]), moved(affine[3]);
+    const double volume = glm::dot(x, glm::cross(y, z));
+    if (volume == 0) {
+        return glm::dvec3(0);
+    }
+    return {-glm::dot(moved, glm::cross(y, z)) / volume,
+            -glm::dot(moved, glm::cross(z, x)) / volume,
+            -glm::dot(moved, glm::cross(x, y)) / volume};
+}
+
 glm::dmat3 rotationAbout(const glm::dvec3& unit_axis, double turns) {
     const double s = det::sinTurns(turns);
     const double c = det::cosTurns(turns);

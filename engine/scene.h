@@ -65,6 +65,9 @@ struct CameraPose {
     glm::dvec3 target{0, 0, 0};
     glm::dvec3 up{0, 1, 0};
     double fov_y_deg = 45;  ///< vertical
+    /// Parallel projection: everything has the size that a perspective camera of this pose would
+    /// show at the target. The near plane may then lie behind the eye.
+    bool orthographic = false;
 };
 
 struct NamedView {
@@ -76,6 +79,7 @@ struct Camera {
     Track<glm::dvec3> eye, target, up;
     Track<double> fov_y_deg;
     double near = 0.1, far = 1000.0;
+    bool orthographic = false;  ///< see CameraPose
 };
 
 /// One frame of a camera file: explicit matrices from another renderer or of a live session, OpenGL

@@ -14,16 +14,18 @@
 namespace still {
 namespace {
 
-/// Where an affine view matrix maps to the origin (Cramer's rule).
-glm::dvec3 eyeOf(const glm::dmat4& view) {
-    const glm::dvec3 x(view[0]), y(view[1]), z(view[2]), moved(view[3]);
-    const double volume = glm::dot(x, glm::cross(y, z));
-    if (volume == 0) {
-        return glm::dvec3(0);
+/// Where the highlights are seen from. A parallel projection sees from infinitely far: its eye is
+/// put back by 10,000 times what it shows, so that directions to it differ by 0.01° at most.
+glm::dvec3 eyeOf(const glm::dmat4& view, const glm::dmat4& projection) {
+    constexpr double kFarBehind = 1e4;
+    const glm::dvec3 eye = originOf(view);
+    if (!isParallel(projection) || projection[1][1] == 0 || projection[2][2] == 0) {
+        return eye;
     }
-    return {-glm::dot(moved, glm::cross(y, z)) / volume,
-            -glm::dot(moved, glm::cross(z, x)) / volume,
-            -glm::dot(moved, glm::cross(x, y)) / volume};
+    const auto sizeOf = [](double scale) { return 2 / (scale < 0 ? -scale : scale); };
+    const double size = sizeOf(projection[1][1]) + sizeOf(projection[2][2]);
+    const glm::dvec3 back(view[0][2], view[1][2], view[2][2]);
+    return eye + back * (kFarBehind * size);
 }
 
 const CameraFileFrame& fileFrame(const CameraFile& file, int frame) {
@@ -47,6 +49,7 @@ CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
         pose.target = valueAt(camera.target, frame, pose.target);
         pose.up = valueAt(camera.up, frame, pose.up);
         pose.fov_y_deg = valueAt(camera.fov_y_deg, frame, pose.fov_y_deg);
+        pose.orthographic = camera.orthographic;
     }
     if (choice.orbit_deg != 0) {
         const double turns = choice.orbit_deg * frame / (360.0 * choice.orbit_frames);
@@ -58,12 +61,12 @@ CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
 CameraState cameraAt(const Scene& scene, const CameraChoice& choice, int frame, double aspect) {
     if (const CameraFile* file = cameraFileOf(scene, choice)) {
         const CameraFileFrame& given = fileFrame(*file, frame);
-        return {given.projection * given.view, eyeOf(given.view)};
+        return {given.projection * given.view, eyeOf(given.view, given.projection)};
     }
     const CameraPose pose = poseAt(scene, choice, frame);
-    const glm::dmat4 projection =
-        perspectiveMatrix(pose.fov_y_deg, aspect, scene.camera.near, scene.camera.far);
-    return {projection * viewMatrix(pose), pose.eye};
+    const CameraFileFrame made = cameraFrame(pose, scene.camera.near, scene.camera.far, aspect);
+    return {made.projection * made.view,
+            pose.orthographic ? eyeOf(made.view, made.projection) : pose.eye};
 }
 
 std::array<float, 3> scaled(const std::array<float, 3>& colour, const Track<double>& intensity,

@@ -5,14 +5,18 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/internal/tracks.h"
+
 namespace still {
 namespace {
 
-/// Where the point infinitely far along (x, y, z) is on the screen, pixels from the centre.
-std::optional<std::array<double, 2>> farPoint(const glm::dmat4& view_projection, double x, double y,
-                                              double z, int width, int height) {
+/// Where the point (x, y, z), or with w = 0 what lies infinitely far along it, is on the screen,
+/// pixels from the centre.
+std::optional<std::array<double, 2>> onScreen(const glm::dmat4& view_projection,
+                                              const glm::dvec4& p, int width, int height) {
     const auto row = [&](int i) {
-        return view_projection[0][i] * x + view_projection[1][i] * y + view_projection[2][i] * z;
+        return view_projection[0][i] * p.x + view_projection[1][i] * p.y +
+               view_projection[2][i] * p.z + view_projection[3][i] * p.w;
     };
     const double w = row(3);
     if (!(w > 0)) {
@@ -34,9 +38,12 @@ SampleOffset driftAfter(SampleOffset drift, const CameraState& camera, const Cam
     if (now == then) {
         return {};
     }
-    const double x = now[0][3], y = now[1][3], z = now[2][3];  // straight ahead
-    const auto here = farPoint(now, x, y, z, width, height);
-    const auto there = farPoint(then, x, y, z, width, height);
+    // Infinitely far straight ahead. A parallel projection has no such place: under it near and far
+    // slide alike, and the middle of what it shows stands for both.
+    const glm::dvec4 ahead = isParallel(now) ? glm::dvec4(originOf(now), 1)
+                                             : glm::dvec4(now[0][3], now[1][3], now[2][3], 0);
+    const auto here = onScreen(now, ahead, width, height);
+    const auto there = onScreen(then, ahead, width, height);
     if (!here || !there) {
         return drift;
     }

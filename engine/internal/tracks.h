@@ -54,6 +54,14 @@ glm::dmat4 worldTransform(const SceneObject& object, double frame);
 /// The upper three rows, rounded to float.
 Affine toAffine(const glm::dmat4& matrix);
 
+/// Where an affine matrix maps to the origin (Cramer's rule); 0 when it has no inverse.
+glm::dvec3 originOf(const glm::dmat4& affine);
+
+/// Whether a projection, or a view-projection, keeps parallels parallel.
+inline bool isParallel(const glm::dmat4& m) {
+    return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] > 0;
+}
+
 /// Length and unit vector by one square root and divisions. `v` must not be zero in unit().
 double lengthOf(const glm::dvec3& v);
 glm::dvec3 unit(const glm::dvec3& v);
