@@ -38,26 +38,6 @@ int instantOf(const CameraFile* file, int frame) {
     return file == nullptr ? frame : fileFrame(*file, frame).scene_frame.value_or(frame);
 }
 
-CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
-    CameraPose pose;
-    if (choice.view >= 0) {
-        assert(size_t(choice.view) < scene.views.size());
-        pose = scene.views[size_t(choice.view)].pose;
-    } else {
-        const Camera& camera = scene.camera;
-        pose.eye = valueAt(camera.eye, frame, pose.eye);
-        pose.target = valueAt(camera.target, frame, pose.target);
-        pose.up = valueAt(camera.up, frame, pose.up);
-        pose.fov_y_deg = valueAt(camera.fov_y_deg, frame, pose.fov_y_deg);
-        pose.orthographic = camera.orthographic;
-    }
-    if (choice.orbit_deg != 0) {
-        const double turns = choice.orbit_deg * frame / (360.0 * choice.orbit_frames);
-        pose.eye = pose.target + rotationAbout(unit(pose.up), turns) * (pose.eye - pose.target);
-    }
-    return pose;
-}
-
 CameraState cameraAt(const Scene& scene, const CameraChoice& choice, int frame, double aspect) {
     if (const CameraFile* file = cameraFileOf(scene, choice)) {
         const CameraFileFrame& given = fileFrame(*file, frame);
@@ -243,6 +223,26 @@ bool cameraVaries(const Scene& scene, const CameraChoice& choice) {
 }
 
 }  // namespace
+
+CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame) {
+    CameraPose pose;
+    if (choice.view >= 0) {
+        assert(size_t(choice.view) < scene.views.size());
+        pose = scene.views[size_t(choice.view)].pose;
+    } else {
+        const Camera& camera = scene.camera;
+        pose.eye = valueAt(camera.eye, frame, pose.eye);
+        pose.target = valueAt(camera.target, frame, pose.target);
+        pose.up = valueAt(camera.up, frame, pose.up);
+        pose.fov_y_deg = valueAt(camera.fov_y_deg, frame, pose.fov_y_deg);
+        pose.orthographic = camera.orthographic;
+    }
+    if (choice.orbit_deg != 0) {
+        const double turns = choice.orbit_deg * frame / (360.0 * choice.orbit_frames);
+        pose.eye = pose.target + rotationAbout(unit(pose.up), turns) * (pose.eye - pose.target);
+    }
+    return pose;
+}
 
 const CameraFile* cameraFileOf(const Scene& scene, const CameraChoice& choice) {
     if (choice.file != nullptr) {

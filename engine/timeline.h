@@ -47,6 +47,9 @@ struct CameraChoice {
 /// unless a view or an orbit is chosen.
 const CameraFile* cameraFileOf(const Scene& scene, const CameraChoice& choice);
 
+/// The pose of the scene's camera, or of the view, with the orbit; explicit matrices have none.
+CameraPose poseAt(const Scene& scene, const CameraChoice& choice, int frame);
+
 /// State of frame `frame` ≥ 0. `width` and `height` give the aspect.
 FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int frame, int width,
                         int height);

@@ -12,12 +12,14 @@ namespace still::inspect {
 class Rig {
   public:
     Rig() = default;
-    /// Clipping planes as far as `pose` is concerned; they are widened when the camera leaves.
+    /// `near` and `far` belong to the pose's projection.
     Rig(const CameraPose& pose, double near, double far);
+    /// The pose that leads to matrices from elsewhere; orbits circle a point near `middle`.
+    Rig(const CameraFileFrame& given, const glm::dvec3& middle);
 
     const CameraPose& pose() const { return pose_; }
-    double near() const { return near_; }
-    double far() const { return far_; }
+    /// As an entry of a camera file.
+    CameraFileFrame entry(double aspect) const;
 
     /// Circles the target; 1 is a whole turn. Up and down ends just before the poles.
     void orbit(double right_turns, double up_turns);
@@ -34,13 +36,16 @@ class Rig {
     /// The point that orbits circle from now on. The camera turns to it.
     void centre(const glm::dvec3& point);
     void setFov(double fov_y_deg);  ///< 1 … 170
+    /// What is seen at the target keeps its size.
+    void setOrthographic(bool on);
 
-    /// Widens near and far so that all of `bounds` is seen from here.
+    /// Moves the clipping planes apart, when they must be, so that all of `bounds` is seen.
     void fitPlanes(const Bounds& bounds);
 
   private:
     CameraPose pose_{};
-    double near_ = 0.1, far_ = 1000;
+    double near_ = 0.1, far_ = 1000;  ///< perspective
+    double parallel_near_ = -1000, parallel_far_ = 1000;
 };
 
 }  // namespace still::inspect

@@ -1,0 +1,35 @@
+#include "demos/inspect/look.h"
+
+#include <algorithm>
+#include <array>
+
+namespace still::inspect {
+namespace {
+
+constexpr std::array kViews{
+    ViewInfo{View::picture, "picture", "what the mode makes"},
+    ViewInfo{View::sample, "sample", "this frame's sample alone, before anything temporal"},
+    ViewInfo{View::depth, "depth", "near is bright, logarithmic; nothing is black"},
+    ViewInfo{View::normal, "normal", "x, y, z of -1 to 1 as red, green, blue; nothing is black"},
+    ViewInfo{View::id, "id", "a colour for each surface; nothing is black"},
+    ViewInfo{View::motion, "motion",
+             "hue is the direction, white rests, full colour at 16 pixels; no history is black"},
+    ViewInfo{View::count, "count", "samples in the pixel: black none, white all of the pattern"},
+    ViewInfo{View::confidence, "confidence", "trust in what is known: black none, white full"},
+    ViewInfo{View::error, "error",
+             "distance from the reference: black none, blue, magenta, orange, yellow, white 64"},
+};
+
+}  // namespace
+
+std::span<const ViewInfo> allViews() {
+    return kViews;
+}
+
+std::optional<View> viewNamed(std::string_view name) {
+    const auto found = std::find_if(kViews.begin(), kViews.end(),
+                                    [&](const ViewInfo& info) { return info.name == name; });
+    return found == kViews.end() ? std::nullopt : std::optional(found->view);
+}
+
+}  // namespace still::inspect

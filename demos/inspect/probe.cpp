@@ -1,0 +1,33 @@
+#include "demos/inspect/probe.h"
+
+namespace still::inspect {
+
+const GBuffer& Probe::draw(int frame, int width, int height, const ProbeSample& sample) {
+    const Scene& scene = film_.scene;
+    const FrameState state = frameStateAt(scene, film_.camera(), frame, width, height);
+    const DrawList list{.meshes = scene.meshes,
+                        .materials = materialsOf(scene, state),
+                        .textures = scene.textures,
+                        .alpha_textures = scene.alpha_textures,
+                        .instances = state.instances,
+                        .windings = film_.windings,
+                        .lighting = state.lighting,
+                        .background = scene.background};
+    const FrameView view{.width = width,
+                         .height = height,
+                         .view_projection = state.camera.view_projection,
+                         .view_projection_before = state.camera_before.view_projection,
+                         .eye = glm::vec3(state.camera.eye),
+                         .jitter_x_fx8 = sample.offset.x_fx8,
+                         .jitter_y_fx8 = sample.offset.y_fx8,
+                         .sample = sample.sample};
+    const RasterSettings settings{.simd = simd_,
+                                  .planes = sample.planes,
+                                  .mip_bias_fx8 = sample.mip_bias_fx8,
+                                  .camera_motion_only = sample.camera_motion_only};
+    rasterizer_.transformAndBin(list, view, settings, workers_);
+    rasterizer_.rasterize(gbuffer_, workers_);
+    return gbuffer_;
+}
+
+}  // namespace still::inspect

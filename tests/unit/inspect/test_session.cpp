@@ -1,0 +1,146 @@
+// A session shows what a plain frame loop makes of its recording, and rests when nothing is new.
+
+#include <catch2/catch.hpp>
+#include <utility>
+
+#include "demos/inspect/session.h"
+#include "demos/scenes/builtin.h"
+#include "engine/hash.h"
+
+using namespace still;
+using namespace still::inspect;
+
+namespace {
+
+constexpr int kWidth = 120, kHeight = 72;
+
+Scene sceneNamed(const std::string& name) {
+    return builtinScene(name).value();
+}
+
+Mode mode(const std::string& name) {
+    return modeNamed(name).value();
+}
+
+uint64_t hashOf(const Drawn& drawn) {
+    return hashPlane(drawn.image);
+}
+
+/// Draws until nothing changes any more.
+int drawToRest(Session& session, int limit) {
+    int draws = 0;
+    while (session.draw().changed && draws < limit) {
+        ++draws;
+    }
+    return draws;
+}
+
+/// What a frame loop makes of the recording's last frame.
+uint64_t renderedAgain(const Session& session, int pane, Workers& workers) {
+    const CameraFile recording = session.recording(pane);
+    FrameSettings settings = session.paneSettings(pane);
+    settings.camera.file = &recording;
+    FrameLoop loop(session.scene(), settings, workers);
+    return hashPlane(loop.render(int(recording.frames.size()) - 1).output);
+}
+
+}  // namespace
+
+TEST_CASE("session: a recording is rendered again with the same bytes", "[unit][session]") {
+    for (const std::string scene : {"cubes", "glass", "pan"}) {
+        Workers workers(2);
+        Session session(sceneNamed(scene), {.width = kWidth, .height = kHeight}, workers);
+        session.look().split = true;
+        session.pane(0).mode = mode("still");
+        session.pane(1).mode = mode("variance");
+        session.play(true);
+        for (int i = 0; i < 40; ++i) {
+            switch (i) {
+                case 5:
+                    session.steer().orbit(0.02, 0.01);
+                    break;
+                case 9:
+                    session.play(false);
+                    break;
+                case 14:
+                    session.steer().dolly(0.8);
+                    session.pane(1).mode = mode("raw");
+                    break;
+                case 20:
+                    session.pane(0).mode = mode("fast");
+                    session.step(1);
+                    break;
+                case 26:
+                    session.scrub(3);
+                    break;
+                case 30:
+                    session.setRenderScale(50);
+                    break;
+                case 34:
+                    session.frameAll();
+                    session.play(true);
+                    break;
+                default:
+                    break;
+            }
+            session.draw();
+            if (i % 3 == 2) {
+                INFO(scene << ", draw " << i);
+                CHECK(session.hash(0) == renderedAgain(session, 0, workers));
+                CHECK(session.hash(1) == renderedAgain(session, 1, workers));
+            }
+        }
+    }
+}
+
+TEST_CASE("session: nothing changed, nothing done", "[unit][session]") {
+    Workers workers(2);
+    int clock = 0;
+    SessionSettings settings{.width = kWidth, .height = kHeight};
+    settings.clock_ms = [&] { return double(++clock); };
+    Session session(sceneNamed("triangle"), settings, workers);
+    session.look().split = true;
+    session.pane(1).mode = mode("ssaa:16");
+    const int draws = drawToRest(session, 200);
+    CHECK(draws >= 64);
+    CHECK(draws < 200);
+    CHECK(session.report(0).at_rest);
+    CHECK(session.report(1).at_rest);
+    clock = 0;
+    const uint64_t before = hashOf(session.draw());
+    CHECK(clock == 0);
+    session.look().divider = 0.25;
+    const Drawn moved = session.draw();
+    CHECK(moved.changed);
+    CHECK(clock == 0);
+    CHECK(hashOf(moved) != before);
+    session.steer().pan(0.1, 0);
+    CHECK(session.draw().changed);
+    CHECK(clock > 0);
+}
+
+TEST_CASE("session: ssaa:N converges to the bytes of ssaa:N", "[unit][session]") {
+    for (const int samples : {1, 7, 16}) {
+        Workers workers(2);
+        Session session(sceneNamed("glass"), {.width = kWidth, .height = kHeight}, workers);
+        session.pane(0).mode = mode("ssaa:" + std::to_string(samples));
+        int last = 0;
+        while (!session.report(0).at_rest) {
+            session.draw();
+            CHECK(session.report(0).samples > last);
+            last = session.report(0).samples;
+        }
+        CHECK(last == samples);
+        CHECK(session.hash(0) == renderedAgain(session, 0, workers));
+    }
+}
+
+TEST_CASE("session: a recursive method rests when a period has changed nothing",
+          "[unit][session]") {
+    Workers workers(2);
+    Session session(sceneNamed("triangle"), {.width = kWidth, .height = kHeight}, workers);
+    session.pane(0).mode = mode("basic");
+    session.pane(0).mode.policy.jitter = JitterPattern::none;
+    CHECK(drawToRest(session, 400) < 400);
+    CHECK(session.report(0).at_rest);
+}
