@@ -366,8 +366,14 @@ void moveBehind(std::vector<T>& to, std::vector<T>& from) {
 Result<ObjModel> loadObj(const std::filesystem::path& path,
                          const std::filesystem::path& cache_folder) {
     InputLog log;
+    const auto withFiles = [&log](ObjModel model) {
+        for (InputLog::Entry& entry : log.entries()) {
+            model.files.push_back(std::move(entry.file));
+        }
+        return model;
+    };
     if (cache_folder.empty()) {
-        return readModel(path, log);
+        return readModel(path, log).map(withFiles);
     }
     const ModelCache cache(cache_folder, path);
     if (std::optional<ObjModel> model = cache.load()) {
@@ -377,7 +383,7 @@ Result<ObjModel> loadObj(const std::filesystem::path& path,
     if (model) {
         cache.store(*model, log);
     }
-    return model;
+    return std::move(model).map(withFiles);
 }
 
 uint32_t appendModel(Scene& scene, ObjModel&& model, std::string name) {
@@ -394,6 +400,7 @@ uint32_t appendModel(Scene& scene, ObjModel&& model, std::string name) {
     moveBehind(scene.textures, model.textures);
     moveBehind(scene.alpha_textures, model.alpha_textures);
     moveBehind(scene.warnings, model.warnings);
+    moveBehind(scene.files, model.files);
     scene.meshes.push_back(std::move(model.mesh));
     scene.mesh_names.push_back(std::move(name));
     return uint32_t(scene.meshes.size() - 1);

@@ -132,6 +132,9 @@ struct Scene {
     std::array<float, 3> background{0.0f, 0.0f, 0.0f};  ///< linear light
     std::vector<int> cuts;                              ///< frames whose camera has no past, sorted
     std::vector<std::string> warnings;                  ///< one line each, for standard error
+    /// Every file that loading read or looked for in vain, each at least once: when none of them
+    /// changes, the same is loaded again. Empty for scenes made by code.
+    std::vector<std::string> files;
 
     uint64_t triangleCount() const;     ///< over all objects
     Bounds bounds(double frame) const;  ///< world box of all vertices

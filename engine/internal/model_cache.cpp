@@ -142,6 +142,9 @@ std::optional<ObjModel> readModel(const fs::path& file, const std::string& key) 
         !fillArrays(file, front.bytes, fills) || !isSound(*model)) {
         return std::nullopt;
     }
+    for (const InputLog::Entry& entry : origin.inputs) {
+        model->files.push_back(entry.file);
+    }
     return model;
 }
 

@@ -78,7 +78,8 @@ void describe(Io& io, Mesh& mesh) {
 
 template <class Io>
 void describe(Io& io, ObjModel& model) {
-    auto& [mesh, materials, names, textures, alpha_textures, warnings] = model;
+    // The files are those of ModelOrigin.
+    auto& [mesh, materials, names, textures, alpha_textures, warnings, files] = model;
     const auto text = [&](std::string& words) { io.text(words); };
     describe(io, mesh);
     io.list(materials, [&](Material& material) { describe(io, material); });

@@ -20,6 +20,7 @@ struct ObjModel {
     std::vector<Texture> textures;
     std::vector<AlphaTexture> alpha_textures;
     std::vector<std::string> warnings;  ///< one line each, naming the file
+    std::vector<std::string> files;     ///< see Scene::files
 };
 
 /// Loads FILE.obj, the MTL libraries it names and the images they name. Images are decoded by

@@ -185,7 +185,9 @@ void SceneFileReader::readObjects() {
 }
 
 void SceneFileReader::readCameraFile(const JsonCursor& file) {
-    Result<CameraFile> cameras = loadCameraFile(folder_ / file.text());
+    const std::filesystem::path path = folder_ / file.text();
+    scene_.files.push_back(path.string());
+    Result<CameraFile> cameras = loadCameraFile(path);
     if (!cameras) {
         file.refuse(cameras.error().message);
         return;
@@ -378,7 +380,10 @@ Result<Scene> loadSceneFile(const std::filesystem::path& file,
     if (!tree) {
         return tl::make_unexpected(tree.error());
     }
-    return SceneFileReader(file, cache_folder, *tree).read();
+    return SceneFileReader(file, cache_folder, *tree).read().map([&](Scene scene) {
+        scene.files.push_back(file.string());
+        return scene;
+    });
 }
 
 }  // namespace still

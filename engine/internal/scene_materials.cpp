@@ -18,6 +18,7 @@ int32_t SceneMaterials::textureOf(const JsonCursor& name,
     if (entry != known.end()) {
         return entry->second;
     }
+    scene_.files.push_back(file.string());
     const Result<Image<Rgba8>> image = loadImage(file);
     if (!image) {
         name.refuse(image.error().message);

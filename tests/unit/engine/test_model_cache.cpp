@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <set>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -106,6 +107,20 @@ TEST_CASE("model cache: what stands there is what loading takes", "[unit][engine
     const Result<Scene> loaded = loadScene(scene.obj, scene.cache_folder);
     REQUIRE(loaded);
     CHECK(loaded->warnings == other.warnings);
+}
+
+TEST_CASE("model cache: a model knows its files, also those looked for in vain, read or kept",
+          "[unit][engine]") {
+    const CachedModel model;
+    const std::vector<std::string> read = model.load().files;
+    REQUIRE(model.hit());
+    CHECK(model.load().files == read);
+    std::set<std::string> names;
+    for (const std::string& file : read) {
+        names.insert(fs::relative(file, model.folder.path()).string());
+    }
+    CHECK(names == std::set<std::string>{"model.obj", "m.mtl", "none.mtl", "c.ppm", "mask.ppm",
+                                         "missing.ppm"});
 }
 
 TEST_CASE("model cache: any file that changes makes a model stale, whatever its date and size",

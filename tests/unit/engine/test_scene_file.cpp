@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -157,6 +158,19 @@ TEST_CASE("scene_file: objects that name the same file share its mesh", "[unit][
     CHECK(scene->objects[1].mesh == 0);
     CHECK(scene->triangleCount() == 4);
     CHECK(scene->objects[1].name == "object 2");
+}
+
+TEST_CASE("scene_file: a scene knows its files, and those of its models", "[unit][scene_file]") {
+    const ScratchScene scratch(
+        R"({"objects":[{"obj":"quad.obj"},{"shape":"sphere"}],"camera":{"file":"cameras.json"}})");
+    fs::copy_file(kData / "cameras.json", scratch.file().parent_path() / "cameras.json");
+    const auto scene = loadScene(scratch.file());
+    REQUIRE(scene);
+    for (const char* name : {"scene.json", "cameras.json", "quad.obj", "quad.mtl"}) {
+        INFO(name);
+        const std::string file = (scratch.file().parent_path() / name).string();
+        CHECK(std::count(scene->files.begin(), scene->files.end(), file) > 0);
+    }
 }
 
 TEST_CASE("scene_file: an unknown key is named in a warning", "[unit][scene_file]") {
