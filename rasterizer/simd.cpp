@@ -31,7 +31,11 @@ std::string_view name(SimdTarget target) {
 std::vector<SimdTarget> availableSimdTargets() {
     std::vector<SimdTarget> targets{SimdTarget::scalar};
 #if STILL_SIMD
-    const int64_t usable = HWY_TARGETS & hwy::SupportedTargets();
+    // Where there is one static target, as on WebAssembly, nobody has to be asked.
+    int64_t usable = HWY_TARGETS;
+    if constexpr (HWY_TARGETS != HWY_STATIC_TARGET) {
+        usable &= hwy::SupportedTargets();
+    }
     for (SimdTarget target : {SimdTarget::ssse3, SimdTarget::sse4, SimdTarget::avx2,
                               SimdTarget::avx512, SimdTarget::neon, SimdTarget::wasm}) {
         if ((usable & internal::highwayBit(target)) != 0) {

@@ -31,7 +31,7 @@ using BFTag = hn::RebindToFloat<BTag>;
 using BHalf = hn::Half<BTag>;
 using BDTag = hn::Rebind<double, BHalf>;  ///< half a batch
 using BVec = hn::Vec<BTag>;
-using BDVec = hn::Vec<BDTag>;
+using BDVec = DoubleVec<BDTag>;
 constexpr int kBatch = int(hn::MaxLanes(BTag()));
 
 constexpr int kTriangleWords = sizeof(TileTriangle) / sizeof(int32_t);
@@ -123,27 +123,27 @@ HWY_INLINE void depthPlanes(Half half, const BVec x[3], const BVec y[3], const B
                             int at) {
     const BDTag d;
     const hn::Rebind<float, BDTag> df;
-    const auto wide = [&](BVec v) { return hn::PromoteTo(d, half(v)); };
-    const auto wide_float = [&](BVec v) { return hn::PromoteTo(d, hn::BitCast(df, half(v))); };
+    const auto wide = [&](BVec v) { return toDoubles(d, half(v)); };
+    const auto wide_float = [&](BVec v) { return toDoubles(d, hn::BitCast(df, half(v))); };
     const BDVec x1 = wide(hn::Sub(x[1], x[0])), x2 = wide(hn::Sub(x[2], x[0]));
     const BDVec y1 = wide(hn::Sub(y[1], y[0])), y2 = wide(hn::Sub(y[2], y[0]));
     const BDVec z0 = wide_float(z_bits[0]);
-    const BDVec z1 = hn::Sub(wide_float(z_bits[1]), z0), z2 = hn::Sub(wide_float(z_bits[2]), z0);
-    const BDVec per_pixel = hn::Div(hn::Set(d, double(kSubpixelOne)), wide(area2));
-    const BDVec dx = hn::Mul(hn::Sub(hn::Mul(z1, y2), hn::Mul(z2, y1)), per_pixel);
-    const BDVec dy = hn::Mul(hn::Sub(hn::Mul(z2, x1), hn::Mul(z1, x2)), per_pixel);
+    const BDVec z1 = sub(wide_float(z_bits[1]), z0), z2 = sub(wide_float(z_bits[2]), z0);
+    const BDVec per_pixel = div(doubles(d, double(kSubpixelOne)), wide(area2));
+    const BDVec dx = mul(sub(mul(z1, y2), mul(z2, y1)), per_pixel);
+    const BDVec dy = mul(sub(mul(z2, x1), mul(z1, x2)), per_pixel);
     const auto absolute = [&](BVec v, int tile_at, double scale) {
-        return hn::Mul(wide(hn::Add(v, hn::Set(BTag(), tile_at))), hn::Set(d, scale));
+        return mul(wide(hn::Add(v, hn::Set(BTag(), tile_at))), doubles(d, scale));
     };
     constexpr double kPixel = 1.0 / kSubpixelOne;
     const BDVec px = absolute(x[0], tile.x0 * kSubpixelOne, kPixel);
     const BDVec py = absolute(y[0], tile.y0 * kSubpixelOne, kPixel);
-    const BDVec origin = hn::Sub(z0, hn::Add(hn::Mul(dx, px), hn::Mul(dy, py)));
-    const BDVec at_box = hn::Add(origin, hn::Add(hn::Mul(dx, absolute(x0, tile.x0, 1.0)),
-                                                 hn::Mul(dy, absolute(y0, tile.y0, 1.0))));
-    hn::Store(hn::DemoteTo(df, at_box), df, out.origin + at);
-    hn::Store(hn::DemoteTo(df, dx), df, out.dx + at);
-    hn::Store(hn::DemoteTo(df, dy), df, out.dy + at);
+    const BDVec origin = sub(z0, add(mul(dx, px), mul(dy, py)));
+    const BDVec at_box =
+        add(origin, add(mul(dx, absolute(x0, tile.x0, 1.0)), mul(dy, absolute(y0, tile.y0, 1.0))));
+    hn::Store(toFloats(df, at_box), df, out.origin + at);
+    hn::Store(toFloats(df, dx), df, out.dx + at);
+    hn::Store(toFloats(df, dy), df, out.dy + at);
 }
 
 /// The masks of samples; `e` are the edges at the first one.

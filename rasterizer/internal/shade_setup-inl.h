@@ -65,19 +65,19 @@ HWY_INLINE void shadePlanes(Half half, const BVec e[3], const BVec e_dx[3], cons
     const hn::Rebind<float, BDTag> df;
     BDVec value[3];
     for (int k = 0; k < 3; ++k) {
-        value[k] = hn::PromoteTo(d, half(e[k]));
+        value[k] = toDoubles(d, half(e[k]));
     }
-    const BDVec area2 = hn::Add(hn::Add(value[0], value[1]), value[2]);
+    const BDVec area2 = add(add(value[0], value[1]), value[2]);
     for (int k = 0; k < 3; ++k) {
-        const BDVec inv_w = hn::PromoteTo(d, hn::Load(df, batch.inv_w[k] + at));
-        const BDVec scale = hn::Div(inv_w, area2);
+        const BDVec inv_w = toDoubles(d, hn::Load(df, batch.inv_w[k] + at));
+        const BDVec scale = div(inv_w, area2);
         // Adding 0 turns −0 into 0, as the sum over the corners does.
         const auto store = [&](BDVec v, float* to) {
-            hn::Store(hn::DemoteTo(df, hn::Add(hn::Mul(v, scale), hn::Zero(d))), df, to + at);
+            hn::Store(toFloats(df, add(mul(v, scale), doubles(d, 0.0))), df, to + at);
         };
         store(value[k], out.value[k]);
-        store(hn::PromoteTo(d, half(e_dx[k])), out.dx[k]);
-        store(hn::PromoteTo(d, half(e_dy[k])), out.dy[k]);
+        store(toDoubles(d, half(e_dx[k])), out.dx[k]);
+        store(toDoubles(d, half(e_dy[k])), out.dy[k]);
     }
 }
 
