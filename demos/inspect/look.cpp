@@ -16,6 +16,10 @@ constexpr std::array kViews{
              "hue is the direction, white rests, full colour at 16 pixels; no history is black"},
     ViewInfo{View::count, "count", "samples in the pixel: black none, white all of the pattern"},
     ViewInfo{View::confidence, "confidence", "trust in what is known: black none, white full"},
+    ViewInfo{View::tiles, "tiles",
+             "green nothing, yellow drawn, orange recorded, red resolved as well"},
+    ViewInfo{View::overdraw, "overdraw",
+             "triangles: black none, blue 2, magenta 4, orange 6, yellow 8, white 11 and more"},
     ViewInfo{View::error, "error",
              "distance from the reference: black none, blue, magenta, orange, yellow, white 64"},
 };

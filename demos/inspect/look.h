@@ -21,6 +21,8 @@ enum class View : uint8_t {
     motion,      ///< of that sample
     count,       ///< samples that a pixel was made from
     confidence,  ///< how much of a pixel is known
+    tiles,       ///< what was done for each tile of 64 × 64 pixels, and skipped
+    overdraw,    ///< triangles that lie over each other
     error,       ///< distance from a supersampled picture that converges while all is still
 };
 

@@ -111,4 +111,46 @@ const GBuffer& Pane::sample() {
     return probe_.gbuffer();
 }
 
+ImageView<const uint16_t> Pane::overdraw() {
+    sample();
+    return probe_.overdraw();
+}
+
+std::vector<TileWork> Pane::tileWork() const {
+    if (loop_) {
+        return loop_->tileWork();
+    }
+    const auto tiles = [](int pixels) { return size_t((pixels + kTileSize - 1) / kTileSize); };
+    const bool complete = reference_->complete();
+    return std::vector<TileWork>(tiles(base_.width) * tiles(base_.height),
+                                 {.drawn = !complete, .resolved = !complete, .finished = complete});
+}
+
+std::vector<SampleOffset> Pane::pattern() const {
+    std::vector<SampleOffset> offsets;
+    if (reference_) {
+        for (int i = 0; i < mode_.ssaa_samples; ++i) {
+            offsets.push_back(ssaaSample(uint32_t(i), uint32_t(mode_.ssaa_samples)));
+        }
+        return offsets;
+    }
+    if (!temporal()) {
+        return {{}};
+    }
+    // The gather's pattern goes along with the camera: all of it is shifted by as much as this
+    // frame's sample is, modulo a pixel.
+    const TaaPolicy& policy = mode_.policy;
+    const auto sampleAt = [&](uint32_t index) {
+        return jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, index);
+    };
+    const SampleOffset plain = sampleAt(sampleNumber());
+    const auto withinPixel = [](int offset_fx8) { return ((offset_fx8 + 128) & 255) - 128; };
+    for (uint32_t i = 0; i < jitterPeriod(policy.jitter); ++i) {
+        const SampleOffset offset = sampleAt(i);
+        offsets.push_back({withinPixel(offset.x_fx8 + result_.jitter.x_fx8 - plain.x_fx8),
+                           withinPixel(offset.y_fx8 + result_.jitter.y_fx8 - plain.y_fx8)});
+    }
+    return offsets;
+}
+
 }  // namespace still::inspect

@@ -2,7 +2,7 @@
 // One of the pictures of a session: a mode at work on the film, and the view of it that is shown.
 
 #include <memory>
-#include <optional>
+#include <vector>
 
 #include "demos/inspect/film.h"
 #include "demos/inspect/look.h"
@@ -43,6 +43,11 @@ class Pane {
 
     /// The G-buffer sample that the mode read for the frame shown, with all planes.
     const GBuffer& sample();
+    ImageView<const uint16_t> overdraw();
+    /// Of each tile; for ssaa:N all are drawn and resolved until it is complete.
+    std::vector<TileWork> tileWork() const;
+    /// Where the samples of the mode lie in this frame's pixels, all of its period.
+    std::vector<SampleOffset> pattern() const;
     SampleOffset jitter() const { return reference_ ? SampleOffset{} : result_.jitter; }
 
   private:

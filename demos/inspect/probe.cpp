@@ -30,4 +30,10 @@ const GBuffer& Probe::draw(int frame, int width, int height, const ProbeSample& 
     return gbuffer_;
 }
 
+ImageView<const uint16_t> Probe::overdraw() {
+    overdraw_.resize(gbuffer_.width(), gbuffer_.height());
+    rasterizer_.overdraw(overdraw_.view(), workers_);
+    return overdraw_.view();
+}
+
 }  // namespace still::inspect

@@ -24,6 +24,8 @@ class Probe {
     /// The G-buffer stays until the next call.
     const GBuffer& draw(int frame, int width, int height, const ProbeSample& sample);
     const GBuffer& gbuffer() const { return gbuffer_; }
+    /// Triangles at each sample drawn last.
+    ImageView<const uint16_t> overdraw();
     const RasterCounters& counters() const { return rasterizer_.counters(); }
 
   private:
@@ -32,6 +34,7 @@ class Probe {
     Workers& workers_;
     Rasterizer rasterizer_;
     GBuffer gbuffer_;
+    Image<uint16_t> overdraw_;
 };
 
 }  // namespace still::inspect

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "demos/inspect/lines.h"
 #include "demos/inspect/paint_rows.h"
 #include "rasterizer/fixed.h"
 
@@ -21,6 +22,11 @@ uint8_t toByte(float value) {
 Rgb8 grey(int value) {
     const uint8_t v = uint8_t(std::clamp(value, 0, 255));
     return {v, v, v};
+}
+
+/// Luma (BT.601), 8 bits.
+Rgb8 greyOf(Rgb8 c) {
+    return grey((77 * c.r + 150 * c.g + 29 * c.b + 128) >> 8);
 }
 
 int mix(int from, int to, int part, int whole) {
@@ -173,6 +179,33 @@ Rgb8 heatColour(int value) {
         return uint8_t(mix(kStops[stop][c], kStops[stop + 1][c], within, kStep));
     };
     return {channel(0), channel(1), channel(2)};
+}
+
+Rgb8 tileColour(const TileWork& work) {
+    if (!work.drawn) {
+        return {0, 160, 60};
+    }
+    if (work.resolved) {
+        return {230, 40, 30};
+    }
+    return work.recorded ? Rgb8{255, 140, 0} : Rgb8{240, 220, 0};
+}
+
+void paintTiles(std::span<const TileWork> tiles, ImageView<const Rgb8> picture, ImageView<Rgb8> out,
+                Workers& workers) {
+    const int tiles_x = (out.width + kTileSize - 1) / kTileSize;
+    paintRows(out, workers, [&](int x, int y) {
+        const size_t tile = size_t(y / kTileSize * tiles_x + x / kTileSize);
+        const Rgb8 colour = tile < tiles.size() ? tileColour(tiles[tile]) : kNothing;
+        return blend(greyOf(picture.at(x, y)), colour, 128);
+    });
+}
+
+void paintOverdraw(ImageView<const uint16_t> triangles, ImageView<Rgb8> out, Workers& workers) {
+    constexpr int kStep = 25;  // white from 11 triangles on
+    paintRows(out, workers, [&](int x, int y) {
+        return heatColour(std::min<int>(triangles.at(x, y), 255) * kStep);
+    });
 }
 
 void paintError(ImageView<const Rgb8> picture, ImageView<const Rgb8> reference, ImageView<Rgb8> out,

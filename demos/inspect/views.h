@@ -2,7 +2,10 @@
 // Intermediates of a frame as pictures for people; the table of colours is in README.md. All of
 // them write every pixel of `out`, which has the size of what they read.
 
+#include <span>
+
 #include "postfx/encode.h"
+#include "postfx/story.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/workers.h"
 
@@ -16,6 +19,10 @@ void paintId(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintMotion(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 /// Black is 0, or a plane that is empty; white is `full`.
 void paintCount(ImageView<const uint8_t> count, int full, ImageView<Rgb8> out, Workers& workers);
+/// The picture in grey under a colour for each tile's work.
+void paintTiles(std::span<const TileWork> tiles, ImageView<const Rgb8> picture, ImageView<Rgb8> out,
+                Workers& workers);
+void paintOverdraw(ImageView<const uint16_t> triangles, ImageView<Rgb8> out, Workers& workers);
 void paintError(ImageView<const Rgb8> picture, ImageView<const Rgb8> reference, ImageView<Rgb8> out,
                 Workers& workers);
 
@@ -24,6 +31,9 @@ Rgb8 surfaceColour(uint32_t surface);
 /// Direction as colour, speed as saturation and brightness: a wheel, full at kMotionFull_fx8.
 Rgb8 motionColour(Motion motion);
 constexpr int kMotionFull_fx8 = 16 * 256;
+/// Not drawn: green. Drawn, but neither recorded nor resolved: yellow. Recorded: orange. Resolved:
+/// red.
+Rgb8 tileColour(const TileWork& work);
 /// 0 … 255 as black, blue, magenta, orange, yellow, white.
 Rgb8 heatColour(int value);
 

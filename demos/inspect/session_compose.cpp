@@ -1,0 +1,157 @@
+// From the panes' pictures to the window's.
+
+#include <algorithm>
+#include <bit>
+#include <glm/matrix.hpp>
+#include <vector>
+
+#include "demos/inspect/canvas.h"
+#include "demos/inspect/session_state.h"
+#include "demos/inspect/views.h"
+#include "rasterizer/fixed.h"
+
+namespace still::inspect {
+namespace {
+
+constexpr Rgb8 kDividerColour{255, 255, 255};
+constexpr Rgb8 kPickedColour{255, 140, 0};
+
+}  // namespace
+
+/// Makes what the slot shows, unless that is the pane's own picture.
+void Session::State::paintView(Slot& slot) {
+    Pane& pane = *slot.pane;
+    slot.shown = slot.wanted.view;
+    slot.stale = false;
+    if (slot.shown == View::picture) {
+        return;
+    }
+    slot.view_picture.resize(renderWidth(), renderHeight());
+    const ImageView<Rgb8> out = slot.view_picture.view();
+    const FrameResult& result = pane.result();
+    switch (slot.shown) {
+        case View::picture:
+            break;
+        case View::sample:
+            return paintColour(pane.sample(), table, out, workers);
+        case View::depth:
+            return paintDepth(pane.sample(), out, workers);
+        case View::normal:
+            return paintNormal(pane.sample(), out, workers);
+        case View::id:
+            return paintId(pane.sample(), out, workers);
+        case View::motion:
+            return paintMotion(pane.sample(), out, workers);
+        case View::count:
+            return paintCount(result.sample_count, result.confidence_full, out, workers);
+        case View::confidence:
+            return paintCount(result.confidence, result.confidence_full, out, workers);
+        case View::tiles:
+            return paintTiles(pane.tileWork(), pane.picture(), out, workers);
+        case View::overdraw:
+            return paintOverdraw(pane.overdraw(), out, workers);
+        case View::error:
+            return paintError(pane.picture(), reference.picture(), out, workers);
+    }
+}
+
+ImageView<const Rgb8> Session::State::shownPicture(const Slot& slot) const {
+    return slot.shown == View::picture ? slot.pane->picture() : slot.view_picture.view();
+}
+
+int Session::State::dividerColumn() const {
+    const int column = int(look.divider * settings.width + 0.5);
+    return look.split ? std::clamp(column, 0, settings.width) : settings.width;
+}
+
+LensPixel Session::State::renderPixel(int x, int y) const {
+    return {int(floorDiv(int64_t{x} * renderWidth(), int64_t{settings.width})),
+            int(floorDiv(int64_t{y} * renderHeight(), int64_t{settings.height}))};
+}
+
+void Session::State::magnify() {
+    std::array<std::vector<SampleOffset>, kPanes> patterns;
+    std::vector<LensSource> sources;
+    for (int i = 0; i < activePanes(); ++i) {
+        const Slot& slot = slots[size_t(i)];
+        patterns[size_t(i)] = slot.pane->pattern();
+        LensSource source{.picture = shownPicture(slot),
+                          .middle = renderPixel(look.magnifier.x, look.magnifier.y),
+                          .pattern = patterns[size_t(i)],
+                          .now = slot.pane->jitter()};
+        if (look.picked) {
+            source.picked = LensPixel{look.picked->x, look.picked->y};
+        }
+        sources.push_back(source);
+    }
+    drawMagnifier(look.magnifier, sources, canvas.view());
+}
+
+/// Four strokes around the picked pixel.
+void Session::State::markPicked() {
+    constexpr int kGap = 3, kStroke = 7;
+    const ImageView<Rgb8> out = canvas.view();
+    const auto middle = [](int pixel, int count, int window) {
+        return int((int64_t{2} * pixel + 1) * window / (2 * count));
+    };
+    const int x = middle(look.picked->x, renderWidth(), out.width);
+    const int y = middle(look.picked->y, renderHeight(), out.height);
+    fillRectangle(out, x - kGap - kStroke, y, kStroke, 1, kPickedColour);
+    fillRectangle(out, x + kGap + 1, y, kStroke, 1, kPickedColour);
+    fillRectangle(out, x, y - kGap - kStroke, 1, kStroke, kPickedColour);
+    fillRectangle(out, x, y + kGap + 1, 1, kStroke, kPickedColour);
+}
+
+void Session::State::compose() {
+    canvas.resize(settings.width, settings.height);
+    const ImageView<Rgb8> out = canvas.view();
+    const int divider = dividerColumn();
+    placePicture(shownPicture(slots[0]), 0, divider, look.smooth_upscale, out, workers);
+    if (look.split) {
+        placePicture(shownPicture(slots[1]), divider, out.width, look.smooth_upscale, out, workers);
+    }
+    overlay.draw(look.overlays, renderWidth(), renderHeight(), out);
+    if (look.split) {
+        fillRectangle(out, divider - 1, 0, 2, out.height, kDividerColour);
+    }
+    if (look.picked) {
+        markPicked();
+    }
+    if (look.magnifier.on) {
+        magnify();
+    }
+}
+
+std::optional<SurfacePoint> Session::State::surfaceAt(int x, int y) {
+    const LensPixel pixel = renderPixel(x, y);
+    if (film.lastFrame() < 0 || pixel.x < 0 || pixel.y < 0 || pixel.x >= renderWidth() ||
+        pixel.y >= renderHeight()) {
+        return std::nullopt;
+    }
+    const GBuffer& centre = overlay.centreSamples(renderWidth(), renderHeight());
+    const int surface = centre.id.at(pixel.x, pixel.y) & kSurfaceMask;
+    if (surface == 0) {
+        return std::nullopt;
+    }
+    SurfacePoint point{.surface = surface};
+    int first = 1;
+    for (const SceneObject& object : film.scene.objects) {
+        const int parts = int(film.scene.meshes[object.mesh].parts.size());
+        if (surface < first + parts) {
+            break;
+        }
+        first += parts;
+        ++point.object;
+    }
+    const FrameState state =
+        frameStateAt(film.scene, film.camera(), film.lastFrame(), renderWidth(), renderHeight());
+    const double depth = double(std::bit_cast<float>(centre.depth.at(pixel.x, pixel.y)));
+    // Reversed depth is (w − z) / 2w.
+    const glm::dvec4 clip((pixel.x + 0.5) / renderWidth() * 2 - 1,
+                          1 - (pixel.y + 0.5) / renderHeight() * 2, 1 - 2 * depth, 1);
+    const glm::dvec4 world = glm::inverse(state.camera.view_projection) * clip;
+    point.position = glm::dvec3(world) / world.w;
+    return point;
+}
+
+}  // namespace still::inspect
