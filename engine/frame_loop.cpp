@@ -7,6 +7,7 @@
 #include <cassert>
 
 #include "engine/internal/camera_drift.h"
+#include "engine/internal/sample_sums.h"
 #include "engine/jitter.h"
 #include "postfx/laboratory.h"
 #include "postfx/sharpen.h"
@@ -18,40 +19,9 @@ namespace {
 constexpr int kNoFrame = -2;
 constexpr int kRowGrain = 16;
 
-/// Per-channel sums of up to 65536 samples: 65536 · 65535 fits 32 bits.
-struct ColourSums {
-    Image<uint32_t> red, green, blue;
-};
 struct ColourImages {
     Image<uint16_t> red, green, blue;
 };
-
-void addPlane(ImageView<const uint16_t> sample, bool first, ImageView<uint32_t> sum,
-              Workers& workers) {
-    workers.parallelFor(sum.height, kRowGrain, [&](int begin, int end, int) {
-        for (int y = begin; y < end; ++y) {
-            const uint16_t* from = sample.row(y);
-            uint32_t* to = sum.row(y);
-            for (int x = 0; x < sum.width; ++x) {
-                to[x] = (first ? 0 : to[x]) + from[x];
-            }
-        }
-    });
-}
-
-/// Rounded half up: count / 2 cannot carry past 32 bits, see ColourSums.
-void averagePlane(ImageView<const uint32_t> sum, uint32_t count, ImageView<uint16_t> mean,
-                  Workers& workers) {
-    workers.parallelFor(sum.height, kRowGrain, [&](int begin, int end, int) {
-        for (int y = begin; y < end; ++y) {
-            const uint32_t* from = sum.row(y);
-            uint16_t* to = mean.row(y);
-            for (int x = 0; x < sum.width; ++x) {
-                to[x] = uint16_t((from[x] + count / 2) / count);
-            }
-        }
-    });
-}
 
 ColourPlanes planesOf(const GBuffer& gbuffer) {
     return {gbuffer.red.view(), gbuffer.green.view(), gbuffer.blue.view()};
@@ -110,6 +80,7 @@ struct FrameLoop::State {
     }
 
     bool temporal() const { return settings.anti_aliasing == AntiAliasing::taa; }
+    bool hasStory() const { return temporal() && !gbuffer.red.empty(); }
     bool gathers() const { return settings.policy.method == Method::gather; }
     bool sharpens() const { return temporal() && settings.policy.sharpness_q15 > 0; }
     int sampleCap() const { return int(jitterPeriod(settings.policy.jitter)); }
@@ -340,23 +311,13 @@ ColourTargets FrameLoop::State::resizeFiltered() {
 
 void FrameLoop::State::averageSamples(const FrameState& frame) {
     const uint32_t count = uint32_t(ssaaSamples());
-    for (Image<uint32_t>* plane : {&sums.red, &sums.green, &sums.blue}) {
-        plane->resize(settings.width, settings.height);
-    }
+    sums.resize(settings.width, settings.height);
     for (uint32_t i = 0; i < count; ++i) {
         rasterizeSample(frame, ssaaSample(i, count), i);
-        timed(times.taa_ms, [&] {
-            addPlane(gbuffer.red.view(), i == 0, sums.red.view(), workers);
-            addPlane(gbuffer.green.view(), i == 0, sums.green.view(), workers);
-            addPlane(gbuffer.blue.view(), i == 0, sums.blue.view(), workers);
-        });
+        timed(times.taa_ms, [&] { sums.add(planesOf(gbuffer), i == 0, workers); });
     }
     const ColourTargets mean = resizeFiltered();
-    timed(times.taa_ms, [&] {
-        averagePlane(std::as_const(sums.red).view(), count, mean.red, workers);
-        averagePlane(std::as_const(sums.green).view(), count, mean.green, workers);
-        averagePlane(std::as_const(sums.blue).view(), count, mean.blue, workers);
-    });
+    timed(times.taa_ms, [&] { sums.average(count, mean, workers); });
 }
 
 void FrameLoop::State::filterSample() {
@@ -490,10 +451,36 @@ const RasterCounters& FrameLoop::counters() const {
 std::optional<PixelStory> FrameLoop::story(int x, int y) const {
     const State& s = *state_;
     const bool inside = x >= 0 && x < s.gbuffer.width() && y >= 0 && y < s.gbuffer.height();
-    if (!s.temporal() || !inside) {
+    if (!s.hasStory() || !inside) {
         return std::nullopt;
     }
     return s.gathers() ? s.taa.story(s.gbuffer, x, y) : s.laboratory.story(s.gbuffer, x, y);
+}
+
+bool FrameLoop::storyPlane(StoryPlane plane, ColourTargets out) const {
+    const State& s = *state_;
+    if (!s.hasStory()) {
+        return false;
+    }
+    if (s.gathers()) {
+        s.taa.storyPlane(s.gbuffer, plane, out, s.workers);
+    } else {
+        s.laboratory.storyPlane(s.gbuffer, plane, out, s.workers);
+    }
+    return true;
+}
+
+bool FrameLoop::rejections(const RejectionTargets& out) const {
+    const State& s = *state_;
+    if (!s.hasStory()) {
+        return false;
+    }
+    if (s.gathers()) {
+        s.taa.rejections(s.gbuffer, out, s.workers);
+    } else {
+        s.laboratory.rejections(s.gbuffer, out, s.workers);
+    }
+    return true;
 }
 
 std::vector<TileWork> FrameLoop::tileWork() const {

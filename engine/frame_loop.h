@@ -97,6 +97,10 @@ class FrameLoop {
 
     /// None without AntiAliasing::taa, before the first frame and outside the picture.
     std::optional<PixelStory> story(int x, int y) const;
+    /// The same for the whole picture; false, and nothing is written, where story() has none. The
+    /// targets have the last frame's size. About a microsecond a pixel and thread.
+    bool storyPlane(StoryPlane plane, ColourTargets out) const;
+    bool rejections(const RejectionTargets& out) const;
     /// Of each tile, row by row; empty before the first frame. Without Method::gather every tile is
     /// drawn and resolved in every frame.
     std::vector<TileWork> tileWork() const;

@@ -6,12 +6,15 @@
 
 #include "postfx/internal/lab_job.h"
 #include "postfx/internal/lab_kernels.h"
+#include "postfx/internal/lab_pixel.h"
 #include "postfx/internal/lab_presets.h"
 #include "postfx/internal/lab_rules.h"
 #include "postfx/internal/lab_weights.h"
 
 namespace still {
 namespace {
+
+constexpr int kStoryRows = 4;
 
 using lab::HistoryIn;
 using lab::HistoryOut;
@@ -103,6 +106,8 @@ struct Laboratory::State {
     Image<uint8_t> confidence;
     TaaPolicy policy;
     bool has_history = false;
+    LaboratoryFrame frame;     ///< resolved last …
+    bool had_history = false;  ///< … on top of a past
 
     int width() const { return shown[0].width(); }
     int height() const { return shown[0].height(); }
@@ -123,22 +128,23 @@ struct Laboratory::State {
         }
     }
 
-    ResolveJob makeJob(const GBuffer& gbuffer, const LaboratoryFrame& frame) {
+    /// On top of the planes `past`, into the others.
+    ResolveJob makeJob(const GBuffer& gbuffer, int past) {
         ResolveJob job;
         job.width = width();
         job.height = height();
         job.stride = gbuffer.red.view().stride;
         job.history_stride = history[0].colour_w24[0].view().stride;
         job.now = currentPlanes(gbuffer);
-        job.before = readOnly(history[size_t(written)].pointers());
-        job.next = history[size_t(1 - written)].pointers();
+        job.before = readOnly(history[size_t(past)].pointers());
+        job.next = history[size_t(1 - past)].pointers();
         for (size_t c = 0; c < 3; ++c) {
             job.shown[c] = shown[c].view().data;
         }
         job.confidence = confidence.view().data;
         job.policy = policy;
         job.constants = makeConstants(policy, frame);
-        job.has_history = has_history;
+        job.has_history = had_history;
         return job;
     }
 
@@ -158,8 +164,9 @@ void Laboratory::resolve(const GBuffer& gbuffer, const LaboratoryFrame& frame,
     assert(!lab::needsNormal(policy) || gbuffer.planes.normal);
     State& s = *state_;
     s.adapt(gbuffer, policy);
-    s.has_history = s.has_history && !frame.reset;
-    const ResolveJob job = s.makeJob(gbuffer, frame);
+    s.frame = frame;
+    s.had_history = s.has_history && !frame.reset;
+    const ResolveJob job = s.makeJob(gbuffer, s.written);
     const lab::TileKernel kernel = lab::tileKernel(simd, s.policy);
     workers.parallelFor(int(gbuffer.tiles.size()), 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
@@ -174,14 +181,32 @@ ColourPlanes Laboratory::colour() const {
     return {state_->shown[0].view(), state_->shown[1].view(), state_->shown[2].view()};
 }
 
+// The frame's past is in the planes that the next frame will write.
 PixelStory Laboratory::story(const GBuffer& gbuffer, int x, int y) const {
-    const State& s = *state_;
-    PixelStory story{.source = PixelSource::blended, .x = x, .y = y};
-    const auto at = [&](const auto& plane) { return int(plane.at(x, y)); };
-    story.raw = {at(gbuffer.red), at(gbuffer.green), at(gbuffer.blue)};
-    story.output = {at(s.shown[0]), at(s.shown[1]), at(s.shown[2])};
-    story.confidence = at(s.confidence);
-    return story;
+    State& s = *state_;
+    return lab::tellPixel(s.makeJob(gbuffer, 1 - s.written), s.frame.jitter_x_fx8,
+                          s.frame.jitter_y_fx8, x, y);
+}
+
+void Laboratory::storyPlane(const GBuffer& gbuffer, StoryPlane plane, ColourTargets out,
+                            Workers& workers) const {
+    const ResolveJob job = state_->makeJob(gbuffer, 1 - state_->written);
+    workers.parallelFor(job.height, kStoryRows, [&](int begin, int end, int) {
+        for (int y = begin; y < end; ++y) {
+            uint16_t* const rows[3] = {out.red.row(y), out.green.row(y), out.blue.row(y)};
+            lab::tellRow(job, plane, y, rows);
+        }
+    });
+}
+
+void Laboratory::rejections(const GBuffer& gbuffer, const RejectionTargets& out,
+                            Workers& workers) const {
+    const ResolveJob job = state_->makeJob(gbuffer, 1 - state_->written);
+    workers.parallelFor(job.height, kStoryRows, [&](int begin, int end, int) {
+        for (int y = begin; y < end; ++y) {
+            lab::tellRejections(job, y, out.reason.row(y), out.lost.row(y));
+        }
+    });
 }
 
 ImageView<const uint8_t> Laboratory::confidence() const {

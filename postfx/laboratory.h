@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "postfx/colour_targets.h"
 #include "postfx/policy.h"
 #include "postfx/story.h"
 #include "postfx/taa.h"
@@ -43,6 +44,11 @@ class Laboratory {
     /// What the last resolve() did at a pixel of the picture. `gbuffer` is the one that it was
     /// given, unchanged since.
     PixelStory story(const GBuffer& gbuffer, int x, int y) const;
+    /// The same for the whole picture, whose size the targets have. Scalar: about a microsecond a
+    /// pixel and thread.
+    void storyPlane(const GBuffer& gbuffer, StoryPlane plane, ColourTargets out,
+                    Workers& workers) const;
+    void rejections(const GBuffer& gbuffer, const RejectionTargets& out, Workers& workers) const;
 
   private:
     struct State;

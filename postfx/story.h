@@ -49,12 +49,14 @@ struct PixelTap {
     int depth = -1;                   ///< logDepth16; −1: not known
     StoryColour colour{};             ///< linear fx12; 0 where nothing is there
     TapLayer layer = TapLayer::same;  ///< Method::gather
-    bool along_far = false;           ///< Method::gather: on the farther layer's way
-    /// Method::gather: counts with the colour that the farther layer has now.
+    /// Method::gather: on the farther layer's way, for the colour that it has here now.
+    bool along_far = false;
+    /// Method::gather: counts with that colour.
     bool recoloured = false;
     /// By its place alone; all of a frame's add up to 256. A cubic filter's may be negative.
     int weight = 0;
-    /// In the result: 0 when rejected. Method::gather: after the plane was laid through all.
+    /// In the result, 0 when rejected. Method::gather: after the plane was laid through all. Else
+    /// of 256 for all of the pixel's; a failed test may only halve it (TaaPolicy::partial).
     int used = 0;
     Verdict verdict = Verdict::taken;
 };
@@ -99,8 +101,9 @@ struct PixelStory {
     PixelSource source = PixelSource::none;
     int x = 0, y = 0;
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;  ///< where this frame's sample lies, from the centre
-    StoryColour raw{};                       ///< this frame's sample
-    StoryColour output{};                    ///< the resolved colour, before sharpening
+    /// This frame's sample; where nothing is drawn any more (TileWork), an earlier one.
+    StoryColour raw{};
+    StoryColour output{};  ///< the resolved colour, before sharpening
 
     StoryOwner owner{};
     /// Method::gather: two surfaces in the 3×3 window; … that move apart.
@@ -120,8 +123,9 @@ struct PixelStory {
     /// The 3×3 window of this frame, row by row; beyond the border the last row and column repeat.
     /// Working colours as in BlendStory; linear with Method::gather.
     std::array<StoryColour, 9> window{};
-    /// What history is held against; without rectification the window's extent and mean. Exact in
-    /// the policy's space, in the other one around the corners of that box.
+    /// What history is held against; without rectification the window's extent. Exact in the
+    /// policy's space, in the other one around the corners of that box; with Method::gather in
+    /// both.
     StoryBox box_rgb{}, box_ycocg{};
     BlendStory blend{};  ///< PixelSource::blended
 };
@@ -135,11 +139,11 @@ enum class StoryPlane : uint8_t {
     /// The past as it is kept: the image of the last frame, or its raw samples (Method::gather).
     history,
     /// The image from the past alone, at this frame's places; 0 where there is none.
-    reprojected,
-    rectified,   ///< the same, held against the box (Method::recursive)
-    box_low,     ///< of the neighbourhood
-    box_high,    ///< …
-    box_middle,  ///< …
+    reprojected,  ///< With Method::gather a still pixel's past is its mean, as shown.
+    rectified,    ///< the same, held against the box (Method::recursive; else as it is)
+    box_low,      ///< of the neighbourhood
+    box_high,     ///< …
+    box_middle,   ///< …
 };
 
 /// Written by rejections().

@@ -9,7 +9,9 @@
 #include <cstring>
 #include <vector>
 
+#include "postfx/internal/gather_story.h"
 #include "postfx/internal/kernels.h"
+#include "postfx/internal/memory.h"
 #include "postfx/internal/rules.h"
 #include "postfx/internal/started.h"
 #include "postfx/spatial.h"
@@ -19,50 +21,11 @@ namespace {
 
 using taa::Job;
 using taa::SlotOut;
+using taa::SlotPlanes;
 using taa::Stillness;
 using taa::TileJitter;
+using taa::TileMemory;
 using taa::TileRect;
-
-struct SlotPlanes {
-    enum Plane { red, green, blue, id, depth, owner_depth, owner, motion_x, motion_y, normal };
-    std::array<Image<int16_t>, normal + 1> planes;
-    int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
-    std::vector<TileJitter> tile_jitter;
-    bool apart = false;  ///< some tiles' samples lie otherwise: they rested
-
-    void resize(int width, int height) {
-        for (Image<int16_t>& plane : planes) {
-            plane.resize(width, height);
-        }
-    }
-    /// As a SlotOut or a SlotIn.
-    template <class Pointers>
-    Pointers pointers() {
-        const auto of = [&](Plane plane) { return planes[plane].view().data; };
-        return {.colour = {of(red), of(green), of(blue)},
-                .id = of(id),
-                .depth = of(depth),
-                .owner_depth = of(owner_depth),
-                .owner = of(owner),
-                .motion = {of(motion_x), of(motion_y)},
-                .normal = of(normal),
-                .jitter_x_fx8 = jitter_x_fx8,
-                .jitter_y_fx8 = jitter_y_fx8,
-                .tile_jitter = apart ? tile_jitter.data() : nullptr};
-    }
-};
-
-/// What is remembered of a tile between frames.
-struct TileMemory {
-    bool summed = false;    ///< its sums are of the present view
-    bool finished = false;  ///< … and complete
-    bool settled = false;   ///< … and all shown
-    bool changed = true;    ///< the last frame changed the picture
-    bool tested = true;     ///< something moved or changed here in this frame
-    bool keeps = true;      ///< this frame's samples go into the ring
-    bool adds = false;      ///< … and were added to its sums
-    int quiet = 0;          ///< frames kept since it was tested, up to the ring's length
-};
 
 bool anyOf(std::span<const uint64_t> surfaces) {
     return std::any_of(surfaces.begin(), surfaces.end(), [](uint64_t word) { return word != 0; });
@@ -96,8 +59,10 @@ struct Taa::State {
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
     bool first = true;         ///< no frame was resolved since the last reset
-    bool shows_first = false;  ///< the image is a first frame's …
-    bool gathers = false;      ///< … or was gathered where it is not settled
+    bool shows_first = false;  ///< the image is a first frame's
+    bool gathered = false;     ///< this frame's was gathered in tiles that are not settled
+    TaaSettings settings;      ///< of the last resolve …
+    TileJitter jitter;         ///< … and where its samples lay
     SpatialFilter spatial;
 
     TileRect rectOf(int tile) const {
@@ -115,6 +80,9 @@ struct Taa::State {
     bool finished(int cap) const;
     void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
+    PixelSource sourceAt(int x, int y) const;
+    template <class Tell>
+    void tellPicture(Workers& workers, Tell&& tell) const;
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
                    Workers& workers);
     void forgetStarted(Workers& workers);
@@ -348,7 +316,7 @@ bool Taa::rest(const TaaSettings& settings) {
     for (TileMemory& tile : s.tiles) {
         tile.changed = tile.keeps = tile.adds = false;
     }
-    s.shows_first = s.gathers = false;
+    s.gathered = false;
     return true;
 }
 
@@ -397,8 +365,10 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     }
     s.sample_cap = settings.sample_cap;
     s.first = false;
-    s.shows_first = first && frame.looked_at;
-    s.gathers = !first && frame.looked_at;
+    s.settings = settings;
+    s.jitter = {int16_t(frame.jitter_x_fx8), int16_t(frame.jitter_y_fx8)};
+    s.shows_first = first;
+    s.gathered = frame.looked_at;
     if (!frame.looked_at) {
         return;
     }
@@ -436,30 +406,67 @@ std::vector<TileWork> Taa::tileWork() const {
     const State& s = *state_;
     std::vector<TileWork> work;
     for (const TileMemory& tile : s.tiles) {
-        const bool gathered = s.gathers && !tile.settled;
         work.push_back({.drawn = tile.keeps || tile.adds,
                         .recorded = tile.keeps,
                         .summed = tile.adds,
-                        .resolved = s.shows_first || gathered,
+                        .resolved = s.gathered && (s.shows_first || !tile.settled),
                         .finished = tile.summed && tile.finished});
     }
     return work;
 }
 
+/// What the image shows there.
+PixelSource Taa::State::sourceAt(int x, int y) const {
+    if (shows_first) {
+        return PixelSource::first;
+    }
+    const TileMemory& tile = tiles[size_t(y / kTileSize * tiles_x + x / kTileSize)];
+    const bool mean = tile.summed && count.at(x, y) >= std::min(taa::kSettled, sample_cap);
+    return mean ? PixelSource::mean : PixelSource::gathered;
+}
+
+// The gather writes nothing but the image, so what it read is still there.
 PixelStory Taa::story(const GBuffer& gbuffer, int x, int y) const {
-    const State& s = *state_;
-    PixelStory story{.x = x, .y = y};
-    const auto at = [&](const auto& plane) { return int(plane.at(x, y)); };
-    const TileMemory& tile = s.tiles[size_t(y / kTileSize * s.tiles_x + x / kTileSize)];
-    const bool mean = tile.summed && at(s.count) >= std::min(taa::kSettled, s.sample_cap);
-    story.source = s.shows_first ? PixelSource::first
-                   : mean        ? PixelSource::mean
-                                 : PixelSource::gathered;
-    story.raw = {at(gbuffer.red), at(gbuffer.green), at(gbuffer.blue)};
-    story.output = {at(s.shown[0]), at(s.shown[1]), at(s.shown[2])};
-    story.count = at(s.shown_count);
-    story.finished = mean && at(s.count) >= s.sample_cap;
+    State& s = *state_;
+    PixelStory story = taa::tellPixel(s.makeJob(gbuffer, s.settings), s.sourceAt(x, y), x, y);
+    story.jitter_x_fx8 = s.jitter.x_fx8;
+    story.jitter_y_fx8 = s.jitter.y_fx8;
     return story;
+}
+
+/// Calls tell(x, y) for all pixels.
+template <class Tell>
+void Taa::State::tellPicture(Workers& workers, Tell&& tell) const {
+    constexpr int kRows = 4;
+    workers.parallelFor(height, kRows, [&](int begin, int end, int) {
+        for (int y = begin; y < end; ++y) {
+            for (int x = 0; x < width; ++x) {
+                tell(x, y);
+            }
+        }
+    });
+}
+
+void Taa::storyPlane(const GBuffer& gbuffer, StoryPlane plane, ColourTargets out,
+                     Workers& workers) const {
+    State& s = *state_;
+    const Job job = s.makeJob(gbuffer, s.settings);
+    s.tellPicture(workers, [&](int x, int y) {
+        const StoryColour colour = taa::tellColour(job, plane, s.sourceAt(x, y), x, y);
+        out.red.row(y)[x] = uint16_t(colour[0]);
+        out.green.row(y)[x] = uint16_t(colour[1]);
+        out.blue.row(y)[x] = uint16_t(colour[2]);
+    });
+}
+
+void Taa::rejections(const GBuffer& gbuffer, const RejectionTargets& out, Workers& workers) const {
+    State& s = *state_;
+    const Job job = s.makeJob(gbuffer, s.settings);
+    s.tellPicture(workers, [&](int x, int y) {
+        const StoryLoss loss = taa::tellLoss(job, s.sourceAt(x, y), x, y);
+        out.reason.row(y)[x] = loss.reason;
+        out.lost.row(y)[x] = uint8_t(loss.lost);
+    });
 }
 
 bool Taa::converged() const {

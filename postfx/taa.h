@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "postfx/colour_targets.h"
 #include "postfx/story.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/simd.h"
@@ -84,7 +85,12 @@ class Taa {
     /// What the last resolve() or rest() did at a pixel of the picture. `gbuffer` is the one that
     /// resolve() was given last, unchanged since.
     PixelStory story(const GBuffer& gbuffer, int x, int y) const;
-    /// What it did for the tiles, row by row.
+    /// The same for the whole picture, whose size the targets have. Scalar: about a microsecond a
+    /// pixel and thread.
+    void storyPlane(const GBuffer& gbuffer, StoryPlane plane, ColourTargets out,
+                    Workers& workers) const;
+    void rejections(const GBuffer& gbuffer, const RejectionTargets& out, Workers& workers) const;
+    /// What they did for the tiles, row by row.
     std::vector<TileWork> tileWork() const;
 
   private:

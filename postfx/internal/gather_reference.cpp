@@ -2,71 +2,25 @@
 
 #include "postfx/internal/gather.h"
 
-#include <algorithm>
-#include <cstdlib>
-
-#include "postfx/internal/owner.h"
-#include "postfx/internal/rules.h"
+#include "postfx/internal/gather_pixel.h"
 #include "postfx/spatial.h"
 
 namespace still::taa {
 namespace {
-
-/// A surface on its way back through the frames.
-struct Layer {
-    int surface = 0, depth = 0;
-    int step = 0;  ///< change of depth per frame into the past
-    int tolerance = 0;
-    Motion motion;
-
-    int depthAt(int k) const { return std::clamp(depth + step * k, 0, 65535); }
-    int toleranceAt(int k) const {
-        return tolerance + (std::min(std::abs(step) * k, 32767) >> kStepShift);
-    }
-};
 
 Layer layerOf(int surface, int depth, int expected, Motion motion, int slope) {
     return {surface, depth, heldStep(expected - depth), kDepthTolerance + kSlopeFactor * slope,
             motion};
 }
 
-enum class Place : uint8_t { nearer, same, farther };
-
-Place placeOf(const Layer& layer, int k, int surface, int depth) {
+TapLayer placeOf(const Layer& layer, int k, int surface, int depth) {
     const int difference = depth - layer.depthAt(k);
     const int tolerance = layer.toleranceAt(k);
     if (surface == layer.surface && std::abs(difference) <= tolerance) {
-        return Place::same;
+        return TapLayer::same;
     }
-    return difference > tolerance ? Place::nearer : Place::farther;
+    return difference > tolerance ? TapLayer::nearer : TapLayer::farther;
 }
-
-/// What the window shows: its owner, and the farthest sample when that lies behind the owner.
-struct Window {
-    Layer owner, far;
-    uint32_t normal = 0;
-    bool moved = false;
-    bool layered = false;   ///< two surfaces, one behind the other
-    bool apart = false;     ///< … that move differently …
-    bool flat = false;      ///< one surface with next to no contrast
-    int frames = kMaxRing;  ///< to follow: fewer where there is one surface with little contrast
-    int slide = 0;          ///< … by this much per frame (1/256 pixel, larger axis)
-};
-
-/// One sample near the pixel's centre.
-struct Tap {
-    int weight = 0;
-    int ex = 0, ey = 0;   ///< its place, 1/64 pixel
-    bool behind = false;  ///< shows what is behind the owner
-    int rgb[3] = {};
-};
-
-struct Taps {
-    Tap tap[4 * kMaxRing];
-    int count = 0;
-    int old_weight = 0;  ///< of the frames before this one
-    Moments moments;
-};
 
 bool inside(const Job& job, int x, int y) {
     return x >= 0 && x < job.width && y >= 0 && y < job.height;
@@ -108,8 +62,7 @@ bool lowContrast(const Job& job, int x, int y, int shift) {
     return low_contrast;
 }
 
-Window lookAround(const Job& job, int x, int y) {
-    const Owner seen = inferOwner(job, x, y, seenOwner(job, x, y));
+Window lookAround(const Job& job, int x, int y, const Owner& seen) {
     Window window;
     window.owner = layerOf(seen.surface, seen.depth, seen.expected, seen.motion, seen.slope);
     window.normal = seen.normal;
@@ -154,30 +107,50 @@ Motion motionAt(const SlotIn& slot, ptrdiff_t at) {
     return {slot.motion[0][at], slot.motion[1][at]};
 }
 
-bool staleShading(const Job& job, const Window& window, int k, Place place, const SlotIn& slot,
-                  ptrdiff_t at) {
+Verdict judgeShading(const Job& job, const Window& window, int k, TapLayer place,
+                     const SlotIn& slot, ptrdiff_t at) {
     const int surface = surfaceAt(slot, at);
     if (job.change_age != nullptr && uint32_t(k) > job.change_age[surface]) {
-        return true;
+        return Verdict::epoch;
     }
-    if (!window.moved || place != Place::same || window.normal == 0) {
-        return false;
+    if (!window.moved || place != TapLayer::same || window.normal == 0) {
+        return Verdict::taken;
     }
     const SmallNormal then = decodeNormal(uint16_t(slot.normal[at]));
     const SmallNormal now = decodeNormal(window.normal);
-    return !similarlyLit(dotOf(then, now), dotOf(then, then), dotOf(now, now));
+    const bool alike = similarlyLit(dotOf(then, now), dotOf(then, then), dotOf(now, now));
+    return alike ? Verdict::taken : Verdict::normal;
 }
 
-/// Follows `layer` back and calls visit(k, slot, at, weight, ex, ey, motion) for every sample with
-/// a weight, where motion is the layer's way from the frame after to frame k.
+void note(Sightings* sightings, const Sighting& sighting) {
+    if (sightings != nullptr) {
+        sightings->at[sightings->count++] = sighting;
+    }
+}
+
+void noteEnd(Sightings* sightings, int age, Verdict reason) {
+    if (sightings != nullptr) {
+        sightings->end_age = age;
+        sightings->end = reason;
+    }
+}
+
+/// Follows `layer` back and calls visit(sighting, slot, at, motion) for every sample with a weight
+/// that can be seen, where motion is the layer's way from the frame after to the sample's. It
+/// judges the sighting.
 template <class Visit>
-void follow(const Job& job, int x, int y, const Layer& layer, int frames, Visit&& visit) {
+void follow(const Job& job, int x, int y, const Layer& layer, int frames, Sightings* sightings,
+            Visit&& visit) {
     Motion motion = layer.motion;
     int px = x * 256, py = y * 256;
+    if (sightings != nullptr) {
+        sightings->frames = sightings->end_age = frames;
+    }
     for (int k = 0; k < frames; ++k) {
         const SlotIn& slot = job.slot[k];
         if (k > 0) {
             if (motion.x_fx8 == kNoHistory) {
+                noteEnd(sightings, k, Verdict::no_history);
                 return;
             }
             px += motion.x_fx8;
@@ -193,15 +166,27 @@ void follow(const Job& job, int x, int y, const Layer& layer, int frames, Visit&
         for (int tap = 0; tap < 4; ++tap) {
             const int i = tap & 1, j = tap >> 1;
             const int weight = (i != 0 ? wx : kAxisWeight - wx) * (j != 0 ? wy : kAxisWeight - wy);
-            const bool seen = inside(job, ix + i, iy + j) &&
-                              (!apart || jitter.sameAs(jitterOf(job, slot, ix + i, iy + j)));
-            if (weight != 0 && seen) {
-                visit(k, slot, (iy + j) * job.stride + ix + i, weight,
-                      still::taa::placeOf(i * 256 - fx), still::taa::placeOf(j * 256 - fy), motion);
+            if (weight == 0) {
+                continue;
             }
+            Sighting sighting{.age = k,
+                              .x = ix + i,
+                              .y = iy + j,
+                              .weight = weight,
+                              .ex = still::taa::placeOf(i * 256 - fx),
+                              .ey = still::taa::placeOf(j * 256 - fy)};
+            if (!inside(job, sighting.x, sighting.y)) {
+                sighting.verdict = Verdict::off_screen;
+            } else if (apart && !jitter.sameAs(jitterOf(job, slot, sighting.x, sighting.y))) {
+                sighting.verdict = Verdict::seam;
+            } else {
+                visit(sighting, slot, sighting.y * job.stride + sighting.x, motion);
+            }
+            note(sightings, sighting);
         }
         const int nx = (sx + 128) >> 8, ny = (sy + 128) >> 8;
         if (!inside(job, nx, ny)) {
+            noteEnd(sightings, k + 1, Verdict::off_screen);
             return;
         }
         const ptrdiff_t nearest = ny * job.stride + nx;
@@ -213,29 +198,34 @@ void follow(const Job& job, int x, int y, const Layer& layer, int frames, Visit&
     }
 }
 
-void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, int k, int weight, int ex, int ey,
-            bool behind) {
+void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, const Sighting& s, bool behind) {
     Tap& tap = taps.tap[taps.count++];
-    tap = {weight,
-           ex,
-           ey,
+    tap = {s.weight,
+           s.ex,
+           s.ey,
            behind,
            {plusOffset(slot.colour[0][at]), plusOffset(slot.colour[1][at]),
             plusOffset(slot.colour[2][at])}};
-    taps.moments.add(weight, ex, ey);
-    taps.old_weight += k > 0 ? weight : 0;
+    taps.moments.add(s.weight, s.ex, s.ey);
+    taps.fresh += s.age == 0 ? 1 : 0;
+    taps.old_weight += s.age > 0 ? s.weight : 0;
 }
 
 /// The farther layer's samples, where the owner did not hide it.
-void collectFar(const Job& job, int x, int y, const Window& window, Taps& taps) {
-    follow(job, x, y, window.far, std::min(kFarFrames, job.frames),
-           [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion) {
+void collectFar(const Job& job, int x, int y, const Window& window, Taps& taps,
+                Sightings* sightings) {
+    follow(job, x, y, window.far, std::min(kFarFrames, job.frames), sightings,
+           [&](Sighting& s, const SlotIn& slot, ptrdiff_t at, Motion) {
                const int surface = surfaceAt(slot, at);
                const int depth = depthAt(slot, at);
-               const bool behind = placeOf(window.owner, k, surface, depth) == Place::farther;
-               const bool there = placeOf(window.far, k, surface, depth) != Place::nearer;
-               if (behind && there && !staleShading(job, window, k, Place::farther, slot, at)) {
-                   addTap(taps, slot, at, k, weight, ex, ey, true);
+               const bool behind =
+                   placeOf(window.owner, s.age, surface, depth) == TapLayer::farther;
+               s.layer = placeOf(window.far, s.age, surface, depth);
+               s.verdict = behind && s.layer != TapLayer::nearer
+                               ? judgeShading(job, window, s.age, TapLayer::farther, slot, at)
+                               : Verdict::depth;
+               if (s.verdict == Verdict::taken) {
+                   addTap(taps, slot, at, s, true);
                }
            });
 }
@@ -248,41 +238,68 @@ bool leftBehind(const Window& window, int k, int depth) {
 }
 
 /// Behind an owner at rest something went by that is not behind it any more.
-bool passedBehind(const Window& window, const SlotIn& slot, ptrdiff_t at, Place place) {
-    return place == Place::farther && !window.moved && movedAt(slot, at) &&
+bool passedBehind(const Window& window, const SlotIn& slot, ptrdiff_t at, TapLayer place) {
+    return place == TapLayer::farther && !window.moved && movedAt(slot, at) &&
            surfaceAt(slot, at) != window.far.surface;
 }
 
-/// Samples along the owner's way: its own, and what was seen beside it.
-void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps) {
-    follow(
-        job, x, y, window.owner, std::min(window.frames, job.frames),
-        [&](int k, const SlotIn& slot, ptrdiff_t at, int weight, int ex, int ey, Motion motion) {
-            const int surface = surfaceAt(slot, at);
-            const int depth = depthAt(slot, at);
-            const Place place = placeOf(window.owner, k, surface, depth);
-            if (k > 0 && passedBehind(window, slot, at, place)) {
-                return;
-            }
-            const bool plain = place == Place::same || (place == Place::farther && window.layered);
-            if (!plain || (window.moved && movedAt(slot, at))) {
-                const Motion other = motionAt(slot, at);
-                const bool left = job.start_age != nullptr && uint32_t(k) > job.start_age[surface];
-                if (k > 0 &&
-                    (left || other.x_fx8 == kNoHistory || slideOf(other, motion) * k > kMaxSlide)) {
-                    return;
-                }
-            }
-            if (k > 0 && staleShading(job, window, k, place, slot, at)) {
-                return;
-            }
-            addTap(taps, slot, at, k, weight, ex, ey,
-                   place == Place::farther && leftBehind(window, k, depth));
-        });
+/// Of the past, a sample at `place` seen from the owner; `motion` is the owner's into its frame.
+Verdict judgeOwn(const Job& job, const Window& window, int k, TapLayer place, const SlotIn& slot,
+                 ptrdiff_t at, Motion motion) {
+    if (passedBehind(window, slot, at, place)) {
+        return Verdict::id;
+    }
+    const bool plain = place == TapLayer::same || (place == TapLayer::farther && window.layered);
+    if (!plain || (window.moved && movedAt(slot, at))) {
+        const int surface = surfaceAt(slot, at);
+        const Motion other = motionAt(slot, at);
+        const bool left = job.start_age != nullptr && uint32_t(k) > job.start_age[surface];
+        if (left || other.x_fx8 == kNoHistory) {
+            return Verdict::velocity;
+        }
+        if (slideOf(other, motion) * k > kMaxSlide) {
+            const int off = std::abs(depthAt(slot, at) - window.owner.depthAt(k));
+            return plain                                ? Verdict::velocity
+                   : off <= window.owner.toleranceAt(k) ? Verdict::id
+                                                        : Verdict::depth;
+        }
+    }
+    return judgeShading(job, window, k, place, slot, at);
 }
 
-/// The samples' plane at the pixel's centre. `behind` replaces the colours of taps behind.
-bool fit(const Taps& taps, const int* behind, int rgb[3]) {
+/// Samples along the owner's way: its own, and what was seen beside it.
+void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps,
+                Sightings* sightings) {
+    follow(job, x, y, window.owner, std::min(window.frames, job.frames), sightings,
+           [&](Sighting& s, const SlotIn& slot, ptrdiff_t at, Motion motion) {
+               const int depth = depthAt(slot, at);
+               s.layer = placeOf(window.owner, s.age, surfaceAt(slot, at), depth);
+               if (s.age > 0) {
+                   s.verdict = judgeOwn(job, window, s.age, s.layer, slot, at, motion);
+               }
+               if (s.verdict == Verdict::taken) {
+                   addTap(taps, slot, at, s,
+                          s.layer == TapLayer::farther && leftBehind(window, s.age, depth));
+               }
+           });
+}
+
+SpatialInput spatialInputOf(const Job& job) {
+    const auto view = [&](auto* data) {
+        return ImageView<std::remove_pointer_t<decltype(data)>>{data, job.width, job.height,
+                                                                job.stride};
+    };
+    return {
+        .colour = {view(job.now.colour[0]), view(job.now.colour[1]), view(job.now.colour[2])},
+        .id = view(job.now.id),
+        .normal = job.now.normal != nullptr ? view(job.now.normal) : ImageView<const uint32_t>{},
+        .jitter_x_fx8 = job.slot[0].jitter_x_fx8,
+        .jitter_y_fx8 = job.slot[0].jitter_y_fx8};
+}
+
+}  // namespace
+
+bool fit(const Taps& taps, const int* behind, int rgb[3]) noexcept {
     if (taps.moments.w < 2) {
         return false;
     }
@@ -307,21 +324,6 @@ bool fit(const Taps& taps, const int* behind, int rgb[3]) {
     return true;
 }
 
-SpatialInput spatialInputOf(const Job& job) {
-    const auto view = [&](auto* data) {
-        return ImageView<std::remove_pointer_t<decltype(data)>>{data, job.width, job.height,
-                                                                job.stride};
-    };
-    return {
-        .colour = {view(job.now.colour[0]), view(job.now.colour[1]), view(job.now.colour[2])},
-        .id = view(job.now.id),
-        .normal = job.now.normal != nullptr ? view(job.now.normal) : ImageView<const uint32_t>{},
-        .jitter_x_fx8 = job.slot[0].jitter_x_fx8,
-        .jitter_y_fx8 = job.slot[0].jitter_y_fx8};
-}
-
-}  // namespace
-
 void mixSpatial(const Job& job, int x, int y, int old_weight, int rgb[3]) noexcept {
     int spatial[3];
     spatialPixel(spatialInputOf(job), x, y, spatial);
@@ -330,31 +332,33 @@ void mixSpatial(const Job& job, int x, int y, int old_weight, int rgb[3]) noexce
     }
 }
 
-void gatherPixel(const Job& job, int x, int y) noexcept {
-    const Window window = lookAround(job, x, y);
-    int behind[3];
-    bool separate = false;
-    if (window.apart) {
-        Taps taps;
-        collectFar(job, x, y, window, taps);
-        separate = fit(taps, nullptr, behind);
+void gatherSteps(const Job& job, int x, int y, GatherSteps& s, PixelSightings* sightings) noexcept {
+    s.seen = inferOwner(job, x, y, seenOwner(job, x, y));
+    s.window = lookAround(job, x, y, s.seen);
+    if (s.window.apart) {
+        collectFar(job, x, y, s.window, s.far, sightings != nullptr ? &sightings->far : nullptr);
+        s.separate = fit(s.far, nullptr, s.behind);
     }
-    Taps taps;
-    collectOwn(job, x, y, window, taps);
-    const ptrdiff_t at = y * job.stride + x;
-    int rgb[3];
-    if (!fit(taps, separate ? behind : nullptr, rgb)) {
+    collectOwn(job, x, y, s.window, s.own, sightings != nullptr ? &sightings->own : nullptr);
+    if (!fit(s.own, s.separate ? s.behind : nullptr, s.rgb)) {
         for (int c = 0; c < 3; ++c) {
-            rgb[c] = job.now.colour[c][at];
+            s.rgb[c] = job.now.colour[c][y * job.stride + x];
         }
     }
-    if (taps.old_weight < kFrameWeight && !window.flat) {
-        mixSpatial(job, x, y, taps.old_weight, rgb);
+    if (s.own.old_weight < kFrameWeight && !s.window.flat) {
+        s.spatial_q8 = kFrameWeight - s.own.old_weight;
+        mixSpatial(job, x, y, s.own.old_weight, s.rgb);
     }
+}
+
+void gatherPixel(const Job& job, int x, int y) noexcept {
+    GatherSteps steps;
+    gatherSteps(job, x, y, steps);
+    const ptrdiff_t at = y * job.stride + x;
     for (int c = 0; c < 3; ++c) {
-        job.shown[c][at] = uint16_t(rgb[c]);
+        job.shown[c][at] = uint16_t(steps.rgb[c]);
     }
-    job.shown_count[at] = uint8_t(roundShift(taps.moments.w, 8));
+    job.shown_count[at] = uint8_t(roundShift(steps.own.moments.w, 8));
 }
 
 void gatherTileReference(const Job& job, const TileRect& tile, bool sums_valid) noexcept {

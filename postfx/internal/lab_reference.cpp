@@ -7,34 +7,21 @@
 //                                        └──────── blend by alpha ◄─────┘ ─► history, shown image
 
 #include <algorithm>
+#include <bit>
 
-#include "postfx/internal/lab_history.h"
 #include "postfx/internal/lab_kernels.h"
-#include "postfx/internal/lab_window.h"
+#include "postfx/internal/lab_pixel.h"
 
 namespace still::lab {
 namespace {
 
-Rgb rounded(const Rgb& colour_w24) {
-    return {{roundShift(colour_w24.v[0], kFractionBits), roundShift(colour_w24.v[1], kFractionBits),
-             roundShift(colour_w24.v[2], kFractionBits)}};
-}
-
 /// History's weight after the tests, 256 = full.
-int trustOf(const TaaPolicy& p, const Past& past, int failed) {
+int trustOf(const TaaPolicy& p, const Past& past, uint8_t failed) {
     if (!past.found || (failed != 0 && !p.partial)) {
         return 0;
     }
-    return 256 >> failed;
+    return 256 >> std::popcount(failed);
 }
-
-/// How a pixel is blended and what is remembered of it.
-struct Share {
-    int32_t alpha_q15 = kAlphaOne;
-    int count = 0;  ///< Blend::mean: samples that history stands for
-    int memory = 0;
-    int confidence = 0;
-};
 
 Share shareOf(const ResolveJob& job, const Past& past, int trust_q8, int speed_fx8) {
     const TaaPolicy& p = job.policy;
@@ -106,8 +93,7 @@ void storeGuide(const ResolveJob& job, ptrdiff_t at, const Guide& guide) {
 
 void storePixel(const ResolveJob& job, int x, int y, const Rgb& colour_w24, const Share& share) {
     const ptrdiff_t at = y * job.history_stride + x, shown_at = y * job.stride + x;
-    const Rgb working = rounded(colour_w24);
-    const Rgb shown = job.policy.tone == Tone::reinhard ? toneOut(working) : working;
+    const Rgb shown = linearOf(job.policy, rounded(colour_w24));
     for (int c = 0; c < 3; ++c) {
         job.next.colour_w24[c][at] = uint32_t(colour_w24.v[c]);
         job.shown[c][shown_at] = uint16_t(shown.v[c]);
@@ -119,29 +105,39 @@ void storePixel(const ResolveJob& job, int x, int y, const Rgb& colour_w24, cons
 }
 
 void resolvePixel(const ResolveJob& job, int x, int y) {
-    const TaaPolicy& p = job.policy;
-    const Window window = loadWindow(job, x, y);
-    const Rgb sample_w24 = filteredSample_w24(job, window);
-    const Guide guide = findGuide(job, x, y);
-    storeGuide(job, y * job.history_stride + x, guide);
-    Past past = findPast(job, x, y, guide);
-    Rgb history = rounded(past.colour_w24);
-    const int32_t luma = lumaOf(rounded(sample_w24));
-    int failed = past.failed;
-    if (p.luma_reject_q15 > 0) {
-        failed += differentLumas(luma, lumaOf(history), p.luma_reject_q15) ? 1 : 0;
-    }
-    const int speed_fx8 = speedOf(guide.motion.x_fx8, guide.motion.y_fx8);
-    if (rectify(job, window, speed_fx8, history)) {
-        past.colour_w24 = {{history.v[0] << kFractionBits, history.v[1] << kFractionBits,
-                            history.v[2] << kFractionBits}};
-    }
-    Share share = shareOf(job, past, trustOf(p, past, failed), speed_fx8);
-    share.alpha_q15 = steadied(p, share.alpha_q15, luma, lumaOf(history));
-    storePixel(job, x, y, blend(p, share, past.colour_w24, sample_w24), share);
+    const PixelSteps steps = stepsOf(job, x, y);
+    storeGuide(job, y * job.history_stride + x, steps.guide);
+    storePixel(job, x, y, steps.colour_w24, steps.share);
 }
 
 }  // namespace
+
+PixelSteps stepsOf(const ResolveJob& job, int x, int y, PastTaps* taps) noexcept {
+    const TaaPolicy& p = job.policy;
+    PixelSteps s;
+    s.window = loadWindow(job, x, y);
+    s.sample_w24 = filteredSample_w24(job, s.window);
+    s.guide = findGuide(job, x, y);
+    s.past = findPast(job, x, y, s.guide, taps);
+    s.history = s.rectified = rounded(s.past.colour_w24);
+    const int32_t luma = lumaOf(rounded(s.sample_w24));
+    s.failed = s.past.failed;
+    if (p.luma_reject_q15 > 0 && differentLumas(luma, lumaOf(s.history), p.luma_reject_q15)) {
+        s.failed |= kLumaTest;
+    }
+    s.speed_fx8 = speedOf(s.guide.motion.x_fx8, s.guide.motion.y_fx8);
+    s.clipped = rectify(job, s.window, s.speed_fx8, s.rectified);
+    Rgb history_w24 = s.past.colour_w24;
+    if (s.clipped) {
+        history_w24 = {{s.rectified.v[0] << kFractionBits, s.rectified.v[1] << kFractionBits,
+                        s.rectified.v[2] << kFractionBits}};
+    }
+    s.trust_q8 = trustOf(p, s.past, s.failed);
+    s.share = shareOf(job, s.past, s.trust_q8, s.speed_fx8);
+    s.share.alpha_q15 = steadied(p, s.share.alpha_q15, luma, lumaOf(s.rectified));
+    s.colour_w24 = blend(p, s.share, history_w24, s.sample_w24);
+    return s;
+}
 
 void fillMargin(const ResolveJob& job, const TileRect& tile) noexcept {
     const ptrdiff_t stride = job.history_stride;

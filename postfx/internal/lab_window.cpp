@@ -5,11 +5,6 @@
 namespace still::lab {
 namespace {
 
-/// Middle and half width of the allowed box, per channel of TaaPolicy::space.
-struct Box {
-    int32_t low[3], high[3], middle[3], half[3];
-};
-
 /// Smallest and largest of the window, or of the samples that share a row or column with the
 /// middle.
 void extent(const TaaPolicy& p, const Window& window, bool plus, int channel, int32_t& low,
@@ -136,13 +131,17 @@ Rgb filteredSample_w24(const ResolveJob& job, const Window& window) noexcept {
     return result;
 }
 
+Box boxOf(const ResolveJob& job, const Window& window, int speed_fx8) noexcept {
+    const TaaPolicy& p = job.policy;
+    return usesStatistics(p) ? statisticsBox(job, window, speed_fx8) : extentBox(p, window);
+}
+
 bool rectify(const ResolveJob& job, const Window& window, int speed_fx8, Rgb& history) noexcept {
     const TaaPolicy& p = job.policy;
     if (p.rectification == Rectification::off) {
         return false;
     }
-    const Box box =
-        usesStatistics(p) ? statisticsBox(job, window, speed_fx8) : extentBox(p, window);
+    const Box box = boxOf(job, window, speed_fx8);
     Rgb colour = toSpace(p, history);
     const bool changed = clips(p) ? clipTo(box, colour) : clampTo(box, colour);
     history = changed ? fromSpace(p, colour) : history;

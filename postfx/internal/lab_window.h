@@ -22,6 +22,14 @@ Window loadWindow(const ResolveJob& job, int x, int y) noexcept;
 /// The pixel's colour of this frame by TaaPolicy::sample.
 Rgb filteredSample_w24(const ResolveJob& job, const Window& window) noexcept;
 
+/// Middle and half width of what history may be, per channel of TaaPolicy::space.
+struct Box {
+    int32_t low[3], high[3], middle[3], half[3];
+};
+
+/// The box of TaaPolicy::rectification; without one, the window's extent. `speed_fx8` as below.
+Box boxOf(const ResolveJob& job, const Window& window, int speed_fx8) noexcept;
+
 /// Holds history against the window. `speed_fx8` is the pixel's, 1/256 pixel a frame. Returns
 /// whether `history` was changed.
 bool rectify(const ResolveJob& job, const Window& window, int speed_fx8, Rgb& history) noexcept;
