@@ -47,13 +47,13 @@ struct Magnifier {
     int x = 0, y = 0;    ///< pixel of the window in the middle of it
     int factor = 8;      ///< 4, 8 or 16 pixels of the window for one of the picture
     bool grid = true;    ///< lines between the pixels
-    bool jitter = true;  ///< where in the middle pixel the samples of the pattern lie
+    bool jitter = true;  ///< the middle pixel once more in the corner, with its samples' places
     friend bool operator==(const Magnifier&, const Magnifier&) = default;
 };
 
 /// Drawn over the finished picture, where the pixels' centres are, hidden by what lies in front.
 struct Overlays {
-    bool grid = false;    ///< on the ground of the scene's bounds
+    bool grid = false;    ///< on the ground, y = 0
     bool axes = false;    ///< x red, y green, z blue, from the origin
     bool edges = false;   ///< of all triangles
     bool tiles = false;   ///< borders of the tiles of 64 × 64 pixels

@@ -60,24 +60,25 @@ struct Lens {
                         colour);
         }
     }
-    /// Where an offset from the middle pixel's centre lies in the window.
-    LensPixel placeOf(SampleOffset offset) const {
-        const int corner_x = left + pixels / 2 * factor, corner_y = top + pixels / 2 * factor;
-        return {corner_x + (offset.x_fx8 + 128) * factor / 256,
-                corner_y + (offset.y_fx8 + 128) * factor / 256};
-    }
+    /// The middle pixel once more, larger, in the lower left corner, with the pattern in it.
     void drawPattern() const {
+        const int side = std::max(pixels * factor / 3, 17);
+        const int x0 = left, y0 = top + pixels * factor - side;
         const bool inside = isInside(source.picture, source.middle.x, source.middle.y);
         const Rgb8 under = inside ? source.picture.at(source.middle.x, source.middle.y) : kOutside;
         const bool bright = 2 * under.r + 5 * under.g + under.b > 8 * 110;
-        const Rgb8 dot = bright ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255};
+        const Rgb8 ink = bright ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255};
+        fillRectangle(out, x0, y0, side, side, under);
+        frameSquare(out, x0 - 1, y0 - 1, side + 2, kMiddle);
+        const auto dot = [&](SampleOffset offset, int size, Rgb8 colour) {
+            fillRectangle(out, x0 + (offset.x_fx8 + 128) * side / 256 - size / 2,
+                          y0 + (offset.y_fx8 + 128) * side / 256 - size / 2, size, size, colour);
+        };
+        const int size = side >= 64 ? 2 : 1;
         for (const SampleOffset offset : source.pattern) {
-            const LensPixel place = placeOf(offset);
-            fillRectangle(out, place.x, place.y, 1, 1, dot);
+            dot(offset, size, ink);
         }
-        const LensPixel now = placeOf(source.now);
-        const int size = factor >= 16 ? 3 : factor >= 8 ? 2 : 1;
-        fillRectangle(out, now.x - size / 2, now.y - size / 2, size, size, kNow);
+        dot(source.now, size + 2, kNow);
     }
 };
 

@@ -18,7 +18,7 @@ struct LensPixel {
 struct LensSource {
     ImageView<const Rgb8> picture;
     LensPixel middle;  ///< may lie outside the picture; so does what is around it
-    std::span<const SampleOffset> pattern{};  ///< shown in the middle pixel …
+    std::span<const SampleOffset> pattern{};  ///< of the middle pixel …
     SampleOffset now{};                       ///< … with the one that this frame took
     std::optional<LensPixel> picked{};
 };

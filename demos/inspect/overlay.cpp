@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 
 #include "demos/inspect/canvas.h"
 
 namespace still::inspect {
 namespace {
 
-constexpr Rgb8 kGridColour{150, 150, 150};
+constexpr Rgb8 kGridColour{220, 220, 220};
 constexpr Rgb8 kEdgeColour{0, 0, 0};
 constexpr Rgb8 kTileColour{0, 220, 220};
 constexpr Rgb8 kArrowColour{255, 220, 0};
 constexpr Rgb8 kArrowShadow{0, 0, 0};
 constexpr Rgb8 kNoHistoryMark{255, 0, 0};
-constexpr uint8_t kGridOpacity = 140, kEdgeOpacity = 200;
+constexpr uint8_t kGridOpacity = 140, kEdgeOpacity = 150;
 constexpr int kTileOpacity = 150;
 
 /// 1, 2 or 5 times a power of ten: at least `size`.
@@ -71,26 +72,29 @@ void Overlay::addLine(const Projection& projection, const glm::dvec3& from, cons
     }
 }
 
-/// On the lower side of the scene's bounds, and half as far again to all sides.
-void Overlay::addGrid(const Projection& projection) {
+/// On the ground: y = 0, or the nearest height of the scene. As large as what is looked at.
+void Overlay::addGrid(const Projection& projection, const CameraFileFrame& camera) {
+    constexpr int kCells = 20;
     if (!bounds_.valid || largestExtent(bounds_) <= 0) {
         return;
     }
-    const double spacing = roundSize(largestExtent(bounds_) / 20);
-    const glm::dvec3 margin(largestExtent(bounds_) / 4);
-    const glm::dvec3 low = bounds_.min - margin, high = bounds_.max + margin;
-    const auto down = [&](double v) { return std::floor(v / spacing) * spacing; };
-    const auto up = [&](double v) { return std::ceil(v / spacing) * spacing; };
-    const double y = bounds_.min.y;
-    const double x0 = down(low.x), x1 = up(high.x), z0 = down(low.z), z1 = up(high.z);
-    const int columns = int((x1 - x0) / spacing + 0.5), rows = int((z1 - z0) / spacing + 0.5);
-    for (int i = 0; i <= columns; ++i) {
-        const double x = x0 + i * spacing;
-        addLine(projection, {x, y, z0}, {x, y, z1}, kGridColour, kGridOpacity);
-    }
-    for (int i = 0; i <= rows; ++i) {
-        const double z = z0 + i * spacing;
-        addLine(projection, {x0, y, z}, {x1, y, z}, kGridColour, kGridOpacity);
+    const double y = std::clamp(0.0, bounds_.min.y, bounds_.max.y);
+    const glm::dmat4 to_world = glm::inverse(camera.view);
+    const glm::dvec3 eye(to_world[3]), forward = -glm::dvec3(to_world[2]);
+    // Where the view meets the ground, or as far ahead as the eye is above it.
+    const double height = std::max(std::abs(eye.y - y), largestExtent(bounds_) / 1000);
+    const double steepness = std::max(std::abs(forward.y), 0.1);
+    const glm::dvec3 middle = eye + forward * (height / steepness);
+    const double spacing =
+        roundSize(std::min(height / steepness * 2, largestExtent(bounds_)) / kCells);
+    const auto snapped = [&](double v) { return std::floor(v / spacing + 0.5) * spacing; };
+    const double x = snapped(middle.x), z = snapped(middle.z), reach = kCells * spacing;
+    for (int i = -kCells; i <= kCells; ++i) {
+        const double at = i * spacing;
+        addLine(projection, {x + at, y, z - reach}, {x + at, y, z + reach}, kGridColour,
+                kGridOpacity);
+        addLine(projection, {x - reach, y, z + at}, {x + reach, y, z + at}, kGridColour,
+                kGridOpacity);
     }
 }
 
@@ -173,7 +177,7 @@ void Overlay::drawTiles(int width, int height, ImageView<Rgb8> out) {
 /// From a point to where it was a frame ago, eight times as long as that is far.
 void Overlay::drawArrows(const GBuffer& gbuffer, ImageView<Rgb8> out) {
     constexpr int kStep = 24;
-    constexpr float kStretch = 8, kLongest = 3 * kStep;
+    constexpr float kStretch = 8, kLongest = 1.5f * kStep;
     std::vector<Segment> arrows;
     for (int y = kStep / 2; y < out.height; y += kStep) {
         for (int x = kStep / 2; x < out.width; x += kStep) {
@@ -225,7 +229,7 @@ void Overlay::draw(const Overlays& wanted, int width, int height, ImageView<Rgb8
             addEdges(projection, state);
         }
         if (wanted.grid) {
-            addGrid(projection);
+            addGrid(projection, film_.recording.frames[size_t(last)]);
         }
         if (wanted.axes) {
             addAxes(projection);

@@ -32,7 +32,7 @@ class Overlay {
         uint32_t a = 0, b = 0;
     };
     const std::vector<Edge>& edgesOf(uint32_t mesh);
-    void addGrid(const Projection& projection);
+    void addGrid(const Projection& projection, const CameraFileFrame& camera);
     void addAxes(const Projection& projection);
     void addEdges(const Projection& projection, const FrameState& state);
     void addLine(const Projection& projection, const glm::dvec3& from, const glm::dvec3& to,

@@ -45,7 +45,7 @@ void Session::State::paintView(Slot& slot) {
         case View::count:
             return paintCount(result.sample_count, result.confidence_full, out, workers);
         case View::confidence:
-            return paintCount(result.confidence, result.confidence_full, out, workers);
+            return paintConfidence(result.confidence, result.confidence_full, out, workers);
         case View::tiles:
             return paintTiles(pane.tileWork(), pane.picture(), out, workers);
         case View::overdraw:

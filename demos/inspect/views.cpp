@@ -164,7 +164,15 @@ void paintMotion(const GBuffer& g, ImageView<Rgb8> out, Workers& workers) {
 
 void paintCount(ImageView<const uint8_t> count, int full, ImageView<Rgb8> out, Workers& workers) {
     paintRows(out, workers, [&](int x, int y) {
-        return count.empty() ? kNothing : grey(count.at(x, y) * 255 / full);
+        return count.empty() ? kNothing
+                             : grey(int(255 * std::sqrt(double(count.at(x, y)) / full) + 0.5));
+    });
+}
+
+void paintConfidence(ImageView<const uint8_t> confidence, int full, ImageView<Rgb8> out,
+                     Workers& workers) {
+    paintRows(out, workers, [&](int x, int y) {
+        return confidence.empty() ? kNothing : grey(confidence.at(x, y) * 255 / full);
     });
 }
 

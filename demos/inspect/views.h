@@ -17,8 +17,11 @@ void paintDepth(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintNormal(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintId(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintMotion(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
-/// Black is 0, or a plane that is empty; white is `full`.
+/// Black is 0, or a plane that is empty; white is `full`. Counts by their square root, so that few
+/// samples are told apart.
 void paintCount(ImageView<const uint8_t> count, int full, ImageView<Rgb8> out, Workers& workers);
+void paintConfidence(ImageView<const uint8_t> confidence, int full, ImageView<Rgb8> out,
+                     Workers& workers);
 /// The picture in grey under a colour for each tile's work.
 void paintTiles(std::span<const TileWork> tiles, ImageView<const Rgb8> picture, ImageView<Rgb8> out,
                 Workers& workers);
