@@ -76,10 +76,8 @@ constexpr std::optional<int64_t> scaledNumber(std::string_view text, int unit) {
 
 struct Entry {
     TaaPolicyKey key;
-    /// Numbers: units per 1, and the range in units. 0 = a choice; the value is its index.
-    int unit = 0;
-    int low = 0, high = 0;
     void (*set)(TaaPolicy&, int) = nullptr;
+    int (*get)(const TaaPolicy&) = nullptr;
 };
 
 template <auto kMember>
@@ -89,13 +87,19 @@ void assign(TaaPolicy& policy, int value) {
 }
 
 template <auto kMember>
+int valueOf(const TaaPolicy& policy) {
+    return int(policy.*kMember);
+}
+
+template <auto kMember>
 constexpr Entry choice(std::string_view name, std::string_view values) {
-    return {{name, values}, 0, 0, 0, assign<kMember>};
+    const int last = int(std::count(values.begin(), values.end(), '|'));
+    return {{name, values, 0, 0, last}, assign<kMember>, valueOf<kMember>};
 }
 template <auto kMember>
 constexpr Entry number(std::string_view name, std::string_view values, int unit, int low,
                        int high) {
-    return {{name, values}, unit, low, high, assign<kMember>};
+    return {{name, values, unit, low, high}, assign<kMember>, valueOf<kMember>};
 }
 
 constexpr int kQ15 = 32768;
@@ -149,15 +153,21 @@ constexpr auto makeKeys() {
 constexpr auto kKeys = makeKeys();
 
 std::optional<int> parsedValue(const Entry& entry, std::string_view text) {
-    if (entry.unit == 0) {
-        return indexIn(entry.key.values, text);
+    const TaaPolicyKey& key = entry.key;
+    if (key.unit == 0) {
+        return indexIn(key.values, text);
     }
-    const std::optional<int64_t> value = scaledNumber(text, entry.unit);
-    if (!value || *value < entry.low || *value > entry.high ||
-        (entry.unit == 1 && text.find('.') != std::string_view::npos)) {
+    const std::optional<int64_t> value = scaledNumber(text, key.unit);
+    if (!value || *value < key.low || *value > key.high ||
+        (key.unit == 1 && text.find('.') != std::string_view::npos)) {
         return {};
     }
     return int(*value);
+}
+
+const Entry* entryOf(std::string_view key) {
+    return std::find_if(std::begin(kEntries), std::end(kEntries),
+                        [&](const Entry& e) { return e.key.name == key; });
 }
 
 }  // namespace
@@ -177,8 +187,7 @@ std::span<const TaaPolicyKey> taaPolicyKeys() {
 }
 
 bool setPolicyKey(TaaPolicy& policy, std::string_view key, std::string_view value) {
-    const auto* entry = std::find_if(std::begin(kEntries), std::end(kEntries),
-                                     [&](const Entry& e) { return e.key.name == key; });
+    const Entry* entry = entryOf(key);
     if (entry == std::end(kEntries)) {
         return false;
     }
@@ -187,6 +196,14 @@ bool setPolicyKey(TaaPolicy& policy, std::string_view key, std::string_view valu
         entry->set(policy, *parsed);
     }
     return parsed.has_value();
+}
+
+int policyNumber(const TaaPolicy& policy, const TaaPolicyKey& key) {
+    return entryOf(key.name)->get(policy);
+}
+
+void setPolicyNumber(TaaPolicy& policy, const TaaPolicyKey& key, int number) {
+    entryOf(key.name)->set(policy, std::clamp(number, key.low, key.high));
 }
 
 }  // namespace still

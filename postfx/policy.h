@@ -135,8 +135,16 @@ const TaaPreset* findPreset(std::string_view name);
 struct TaaPolicyKey {
     std::string_view name;
     std::string_view values;  ///< allowed ones, for messages: "off|on", "0 … 1"
+    /// Of numbers: units per 1. 0: one of `values`, whose number is its place there.
+    int unit = 0;
+    int low = 0, high = 0;  ///< range in units, or of places
 };
 std::span<const TaaPolicyKey> taaPolicyKeys();
+
+/// The setting of one of taaPolicyKeys() as the number it is kept as.
+int policyNumber(const TaaPolicy& policy, const TaaPolicyKey& key);
+/// `number` is held within the key's range.
+void setPolicyNumber(TaaPolicy& policy, const TaaPolicyKey& key, int number);
 
 /// False, and nothing is changed, when there is no such key or the value is not one of its values.
 /// Decimal fractions are rounded half up to the field's unit, in integers.

@@ -142,3 +142,25 @@ TEST_CASE("policy: every listed choice is accepted, each gives another policy", 
     CHECK(with("tone", "reinhard").tone == Tone::reinhard);
     CHECK(with("dering", "on").dering);
 }
+
+TEST_CASE("policy: every key's number is read back, held within its range", "[postfx][unit]") {
+    for (const TaaPolicyKey& key : taaPolicyKeys()) {
+        INFO(key.name);
+        TaaPolicy policy;
+        for (const int number : {key.low, key.high, (key.low + key.high) / 2}) {
+            setPolicyNumber(policy, key, number);
+            CHECK(policyNumber(policy, key) == number);
+        }
+        setPolicyNumber(policy, key, key.high + 1);
+        CHECK(policyNumber(policy, key) == key.high);
+        setPolicyNumber(policy, key, key.low - 1);
+        CHECK(policyNumber(policy, key) == key.low);
+        if (key.unit == 0) {
+            const std::vector<std::string> choices = choicesOf(key.values);
+            REQUIRE(int(choices.size()) == key.high + 1);
+            for (int place = 0; place <= key.high; ++place) {
+                CHECK(policyNumber(with(key.name, choices[size_t(place)]), key) == place);
+            }
+        }
+    }
+}
