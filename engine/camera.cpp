@@ -43,6 +43,23 @@ glm::dmat4 orthographicMatrix(double half_height, double aspect, double near, do
     return projection;
 }
 
+CameraPose circled(const CameraPose& pose, double azimuth_deg, double elevation_deg) {
+    const glm::dvec3 up = unit(pose.up);
+    const glm::dmat3 around = rotationAbout(up, azimuth_deg / 360);
+    const glm::dvec3 back = around * (pose.eye - pose.target);
+    CameraPose result = pose;
+    result.eye = pose.target + back;
+    if (elevation_deg == 0) {
+        return result;
+    }
+    const glm::dmat4 view = viewMatrix(result);
+    const glm::dvec3 side(view[0][0], view[1][0], view[2][0]);
+    const glm::dmat3 upwards = rotationAbout(side, -elevation_deg / 360);
+    result.eye = pose.target + upwards * back;
+    result.up = upwards * glm::dvec3(view[0][1], view[1][1], view[2][1]);
+    return result;
+}
+
 CameraFileFrame cameraFrame(const CameraPose& pose, double near, double far, double aspect) {
     CameraFileFrame frame;
     frame.view = viewMatrix(pose);

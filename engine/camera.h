@@ -23,6 +23,10 @@ glm::dmat4 perspectiveMatrix(double fov_y_deg, double aspect, double near, doubl
 /// sign.
 glm::dmat4 orthographicMatrix(double half_height, double aspect, double near, double far);
 
+/// The pose after its eye has circled its target: by `azimuth_deg` about up, counter-clockwise as
+/// up sees it, then by `elevation_deg` towards up, which tilts up along. Target ≠ eye.
+CameraPose circled(const CameraPose& pose, double azimuth_deg, double elevation_deg);
+
 /// View and projection, as the timeline would make them of the same pose.
 CameraFileFrame cameraFrame(const CameraPose& pose, double near, double far, double aspect);
 

@@ -171,4 +171,8 @@ double pow(double x, double y) {
     return exp2(y * (log.integer + log.fraction));
 }
 
+double linearFromSrgb(double value) {
+    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
 }  // namespace still::det

@@ -15,4 +15,7 @@ double tanDegrees(double degrees);
 /// x^y for x ≥ 0 and finite y; relative error < 1e-12. pow(0, y > 0) is 0.
 double pow(double x, double y);
 
+/// sRGB-encoded 0 … 1 to linear light (IEC 61966-2-1).
+double linearFromSrgb(double value);
+
 }  // namespace still::det

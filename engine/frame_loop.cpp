@@ -31,7 +31,10 @@ ColourPlanes planesOf(const GBuffer& gbuffer) {
 
 struct FrameLoop::State {
     State(const Scene& scene_in, const FrameSettings& settings_in, Workers& workers_in)
-        : scene(scene_in), settings(settings_in), workers(workers_in), table(settings.tone_map) {
+        : scene(scene_in),
+          settings(settings_in),
+          workers(workers_in),
+          table(settings.tone_map, settings.exposure) {
         windings.resize(scene.meshes.size());
         workers.parallelFor(int(windings.size()), 1, [&](int begin, int end, int) {
             for (int i = begin; i < end; ++i) {
@@ -146,7 +149,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                         .instances = frame.instances,
                         .windings = windings,
                         .lighting = frame.lighting,
-                        .background = scene.background};
+                        .background = settings.background.value_or(scene.background)};
     const FrameView view{.width = settings.width,
                          .height = settings.height,
                          .view_projection = frame.camera.view_projection,

@@ -1,6 +1,7 @@
 #pragma once
 // Scene and settings in, frames out: timeline → rasterizer → TAA (or ssaa, fxaa) → 8-bit image.
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -30,6 +31,9 @@ struct FrameSettings {
     TaaPolicy policy{};     ///< used with AntiAliasing::taa; the preset `still`
     int ssaa_samples = 64;  ///< 1 … 65536, used with AntiAliasing::ssaa
     ToneMap tone_map = ToneMap::none;
+    double exposure = 1;  ///< light is multiplied by it when it is encoded, before the tone map
+    /// Linear light, instead of the scene's.
+    std::optional<std::array<float, 3>> background{};
     SimdTarget simd = bestSimdTarget();
     Shading shading = Shading::deferred;
     PlaneSet planes{};  ///< in addition to what the other settings need

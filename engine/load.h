@@ -2,6 +2,7 @@
 // Files in, Scene out. Everything here returns an Error with one clear line instead of crashing.
 
 #include <filesystem>
+#include <string>
 
 #include "engine/result.h"
 #include "engine/scene.h"
@@ -15,6 +16,14 @@ namespace still {
 /// Scene and warnings are the same; a folder that cannot be used costs time only.
 Result<Scene> loadScene(const std::filesystem::path& file,
                         const std::filesystem::path& cache_folder = {});
+
+/// Text of a scene file, which begins with a brace, or else of an OBJ. `name` stands for it in
+/// messages; files that it names are looked for in the present folder.
+Result<Scene> loadSceneText(std::string text, const std::string& name);
+
+/// For a scene, just loaded, whose up is not +y (`up` is not zero): that of the camera and all
+/// views. Automatic light and camera are turned along, +x staying to the right unless up is ±x.
+void setUpAxis(Scene& scene, glm::dvec3 up);
 
 /// Loads {"width":W,"height":H,"frames":[{"view":[16],"proj":[16],"jitter":[x,y],"frame":N,
 /// "cut":true}…]}: column-major, OpenGL clip space, proj unjittered, jitter in pixels = sample

@@ -335,13 +335,15 @@ Result<ObjModel> buildModel(const std::filesystem::path& path, ObjFile file, Inp
     return model;
 }
 
-Result<ObjModel> readModel(const std::filesystem::path& path, InputLog& log) {
+/// From `text`, which stands at `path` or is read from there.
+Result<ObjModel> readModel(const std::filesystem::path& path, InputLog& log,
+                           std::optional<std::string> text = {}) {
     try {
-        Result<std::string> text = log.read(path);
-        if (!text) {
-            return tl::make_unexpected(text.error());
+        Result<std::string> whole = text ? Result<std::string>(std::move(*text)) : log.read(path);
+        if (!whole) {
+            return tl::make_unexpected(whole.error());
         }
-        Result<ObjFile> file = parseObj(std::move(*text), shownPath(path));
+        Result<ObjFile> file = parseObj(std::move(*whole), shownPath(path));
         if (!file) {
             return tl::make_unexpected(file.error());
         }
@@ -384,6 +386,11 @@ Result<ObjModel> loadObj(const std::filesystem::path& path,
         cache.store(*model, log);
     }
     return std::move(model).map(withFiles);
+}
+
+Result<ObjModel> parseObjModel(std::string text, const std::filesystem::path& name) {
+    InputLog log;
+    return readModel(name, log, std::move(text));
 }
 
 uint32_t appendModel(Scene& scene, ObjModel&& model, std::string name) {

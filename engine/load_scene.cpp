@@ -1,6 +1,9 @@
+#include <glm/geometric.hpp>
+
 #include "engine/internal/obj.h"
 #include "engine/internal/obj_text.h"
 #include "engine/internal/scene_file.h"
+#include "engine/internal/tracks.h"
 #include "engine/load.h"
 #include "engine/timeline.h"
 
@@ -19,15 +22,14 @@ std::string lowerExtension(const std::filesystem::path& file) {
     return extension;
 }
 
-Result<Scene> sceneFromObj(const std::filesystem::path& file,
-                           const std::filesystem::path& cache_folder) {
-    Result<ObjModel> model = loadObj(file, cache_folder);
+Result<Scene> sceneFromModel(const std::filesystem::path& file, Result<ObjModel> model) {
     if (!model) {
         return tl::make_unexpected(model.error());
     }
     Scene scene;
     scene.name = file.stem().string();
     scene.lights = defaultLights();
+    scene.automatic_light = true;
     scene.warnings = std::move(model->warnings);
     SceneObject object;
     object.name = scene.name;
@@ -41,6 +43,22 @@ Result<Scene> sceneFromObj(const std::filesystem::path& file,
     return scene;
 }
 
+Result<Scene> framed(Result<Scene> scene) {
+    if (scene && scene->automatic_camera) {
+        frameScene(*scene, kPleasantDirection, kUsualAspect);
+    }
+    return scene;
+}
+
+/// Turns +y to `up`, and keeps +x to the right where that can be.
+glm::dmat3 turnedUp(const glm::dvec3& up) {
+    const double sign = up.x < 0 ? 1 : -1;
+    const bool sideways = up.x > 0.9 || up.x < -0.9;
+    const glm::dvec3 right = sideways ? glm::dvec3(0, sign, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 towards_viewer = unit(glm::cross(right, up));
+    return {glm::cross(up, towards_viewer), up, towards_viewer};
+}
+
 }  // namespace
 
 Result<Scene> loadScene(const std::filesystem::path& file,
@@ -49,12 +67,33 @@ Result<Scene> loadScene(const std::filesystem::path& file,
     if (extension != ".obj" && extension != ".json") {
         return fail(shownPath(file) + ": unknown kind of file, expected NAME.obj or NAME.json");
     }
-    Result<Scene> scene =
-        extension == ".obj" ? sceneFromObj(file, cache_folder) : loadSceneFile(file, cache_folder);
-    if (scene && scene->automatic_camera) {
-        frameScene(*scene, kPleasantDirection, kUsualAspect);
+    return framed(extension == ".obj" ? sceneFromModel(file, loadObj(file, cache_folder))
+                                      : loadSceneFile(file, cache_folder));
+}
+
+Result<Scene> loadSceneText(std::string text, const std::string& name) {
+    const size_t first = text.find_first_not_of(" \t\r\n");
+    if (first != std::string::npos && text[first] == '{') {
+        return framed(parseSceneFile(text, name));
     }
-    return scene;
+    return framed(sceneFromModel(name, parseObjModel(std::move(text), name)));
+}
+
+void setUpAxis(Scene& scene, glm::dvec3 up) {
+    up = unit(up);
+    const glm::dmat3 turn = turnedUp(up);
+    if (scene.automatic_light) {
+        const auto& from = scene.lights.sun.direction;
+        const glm::dvec3 d = turn * glm::dvec3(from[0], from[1], from[2]);
+        scene.lights.sun.direction = {float(d.x), float(d.y), float(d.z)};
+    }
+    for (NamedView& view : scene.views) {
+        view.pose.up = up;
+    }
+    scene.camera.up.keys = {{0, up}};
+    if (scene.automatic_camera) {
+        frameScene(scene, turn * kPleasantDirection, kUsualAspect, up);
+    }
 }
 
 }  // namespace still

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -127,6 +128,7 @@ struct Scene {
         camera_file;  ///< goes before `camera`, unless a view or an orbit is chosen
     /// The camera comes from frameScene() for 16:9; whoever knows the real aspect calls it again.
     bool automatic_camera = false;
+    bool automatic_light = false;  ///< `lights` are what a file gets that says nothing of them
     std::vector<NamedView> views;
     SceneLights lights;
     std::array<float, 3> background{0.0f, 0.0f, 0.0f};  ///< linear light

@@ -308,23 +308,28 @@ std::span<const Material> materialsOf(const Scene& scene, const FrameState& stat
     return state.materials.empty() ? scene.materials : state.materials;
 }
 
-bool isStill(const Scene& scene, const CameraChoice& choice) {
-    if (cameraVaries(scene, choice)) {
-        return false;
-    }
+Changes changesOf(const Scene& scene, const CameraChoice& choice) {
+    Changes changes;
+    changes.camera = cameraVaries(scene, choice);
     const CameraFile* file = cameraFileOf(scene, choice);
-    if (file != nullptr && file->frames[0].scene_frame) {
-        return true;
+    if (file != nullptr && file->frames[0].scene_frame && !changes.camera) {
+        return changes;  // all of its frames show one instant
     }
-    const bool has_cuts =
+    changes.cuts =
         std::any_of(scene.cuts.begin(), scene.cuts.end(), [](int cut) { return cut > 0; });
-    const bool objects_move =
-        std::any_of(scene.objects.begin(), scene.objects.end(),
-                    [](const SceneObject& object) { return varies(object.tracks); });
-    const bool materials_change =
+    changes.objects = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                  [](const SceneObject& object) { return varies(object.tracks); });
+    changes.materials =
         std::any_of(scene.material_tracks.begin(), scene.material_tracks.end(),
                     [&](const MaterialTracks& tracks) { return materialVaries(scene, tracks); });
-    return !has_cuts && !objects_move && !materials_change && !lightingVaries(scene.lights);
+    changes.lights = lightingVaries(scene.lights);
+    return changes;
+}
+
+bool isStill(const Scene& scene, const CameraChoice& choice) {
+    const Changes changes = changesOf(scene, choice);
+    return !changes.objects && !changes.materials && !changes.lights && !changes.camera &&
+           !changes.cuts;
 }
 
 uint32_t surfaceCount(const Scene& scene) {

@@ -61,6 +61,12 @@ std::span<const Material> materialsOf(const Scene& scene, const FrameState& stat
 /// that the camera file calls a cut.
 int lastCut(const Scene& scene, const CameraChoice& choice, int frame);
 
+/// What changes from frame to frame.
+struct Changes {
+    bool objects = false, materials = false, lights = false, camera = false, cuts = false;
+};
+Changes changesOf(const Scene& scene, const CameraChoice& choice);
+
 /// True when no frame differs from frame 0 (no animation of objects, materials, lights or
 /// camera, no orbit, cut or moving camera file).
 bool isStill(const Scene& scene, const CameraChoice& choice);

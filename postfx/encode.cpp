@@ -41,11 +41,11 @@ constexpr int kGrainRows = 16;
 
 }  // namespace
 
-OutputTable::OutputTable(ToneMap tone_map) {
+OutputTable::OutputTable(ToneMap tone_map, double exposure) {
     int code = 0;
     double next_begins = decodeSrgb(0.5 / 255.0);
     for (int v = 0; v < 65536; ++v) {
-        const double light = toneMapped(double(v) / double(kColourOne), tone_map);
+        const double light = toneMapped(double(v) / double(kColourOne) * exposure, tone_map);
         while (code < 255 && light >= next_begins) {
             ++code;
             next_begins = decodeSrgb((double(code) + 0.5) / 255.0);

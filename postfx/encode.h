@@ -18,7 +18,8 @@ enum class ToneMap {
 /// The table for fx12 inputs 0 … 65535. Computed with + − × ÷ √ only, equal everywhere.
 class OutputTable {
   public:
-    explicit OutputTable(ToneMap tone_map = ToneMap::none);
+    /// Light is multiplied by `exposure` ≥ 0 first.
+    explicit OutputTable(ToneMap tone_map = ToneMap::none, double exposure = 1);
     uint8_t operator[](uint16_t linear_fx12) const { return table_[linear_fx12]; }
 
   private:

@@ -171,4 +171,23 @@ const RasterCounters& Rasterizer::counters() const {
     return state_->counters;
 }
 
+std::vector<SurfaceWork> Rasterizer::surfaceWork() const {
+    std::vector<SurfaceWork> works;
+    const auto& surfaces = state_->setup.surfaces;
+    for (size_t i = 1; i < surfaces.size(); ++i) {
+        const internal::Surface& s = surfaces[i];
+        const auto has = [&](internal::ShadeFeature feature) {
+            return (s.features & feature) != 0;
+        };
+        works.push_back({.textured = has(internal::kShadeTexture),
+                         .normal_mapped = has(internal::kShadeNormalMap),
+                         .parallax = has(internal::kShadeHeightMap),
+                         .positioned = has(internal::kShadePosition),
+                         .alpha_tested = s.material->alpha_mode == AlphaMode::test,
+                         .stochastic = s.material->alpha_mode == AlphaMode::stochastic,
+                         .kernel = internal::shadeLevel(s.features)});
+    }
+    return works;
+}
+
 }  // namespace still

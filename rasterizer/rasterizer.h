@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
@@ -73,6 +74,15 @@ struct RasterCounters {
     }
 };
 
+/// What the kernels do for a surface. A tile runs the smallest shading kernel that covers all of
+/// its surfaces, and looks alpha up only where one needs it.
+struct SurfaceWork {
+    bool textured = false, normal_mapped = false, parallax = false;
+    bool positioned = false;  ///< highlights or point lights: lit by where it is
+    bool alpha_tested = false, stochastic = false;
+    int kernel = 0;  ///< 0 = plain colours, 1 = textures, 2 = all but height maps, 3 = all
+};
+
 /// Keeps its buffers from frame to frame. Not copyable, one frame at a time.
 class Rasterizer {
   public:
@@ -99,6 +109,9 @@ class Rasterizer {
     void rasterize(GBuffer& out, Workers& workers, std::span<const uint8_t> wanted = {});
 
     const RasterCounters& counters() const;
+
+    /// After setUp(): surface s is element s − 1.
+    std::vector<SurfaceWork> surfaceWork() const;
 
     /// Writes for each pixel how many triangles hold its sample, hidden ones and holes of alpha
     /// tests included, in the frame that was binned last; at most 65535. `out` has that frame's

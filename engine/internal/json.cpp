@@ -151,24 +151,24 @@ const JsonValue kNothing{};
 
 }  // namespace
 
-Result<JsonValue> readJson(const std::filesystem::path& file) {
+Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path& name) {
     // The parser's own exceptions go to parse_error(); this catches what is left (memory).
     try {
-        const Result<std::string> text = readFile(file);
-        if (!text) {
-            return tl::make_unexpected(text.error());
+        if (text.size() > kMaxBytes) {
+            return fail(shownPath(name) + ": too large, expected at most 256 MiB");
         }
-        if (text->size() > kMaxBytes) {
-            return fail(shownPath(file) + ": too large, expected at most 256 MiB");
-        }
-        TreeBuilder builder(*text);
-        if (!nlohmann::json::sax_parse(*text, &builder)) {
-            return fail(shownPath(file) + builder.error());
+        TreeBuilder builder(text);
+        if (!nlohmann::json::sax_parse(text, &builder)) {
+            return fail(shownPath(name) + builder.error());
         }
         return builder.takeRoot();
     } catch (const std::exception& error) {
-        return fail(shownPath(file) + ": cannot be read: " + error.what());
+        return fail(shownPath(name) + ": cannot be read: " + error.what());
     }
+}
+
+Result<JsonValue> readJson(const std::filesystem::path& file) {
+    return readFile(file).and_then([&](const std::string& text) { return parseJson(text, file); });
 }
 
 void JsonCursor::refuse(std::string_view message) const {

@@ -30,6 +30,8 @@ struct JsonValue {
 /// 256 MiB, nesting deeper than 32, numbers that overflow a double, repeated keys, and
 /// objects of more than 1000 keys.
 Result<JsonValue> readJson(const std::filesystem::path& file);
+/// The same of text that `name` stands for in messages.
+Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path& name);
 
 /// What went wrong while a tree was read.
 struct JsonReport {

@@ -6,11 +6,6 @@
 namespace still {
 namespace {
 
-/// IEC 61966-2-1.
-float linearFromSrgb(double value) {
-    return float(value <= 0.04045 ? value / 12.92 : det::pow((value + 0.055) / 1.055, 2.4));
-}
-
 glm::dvec3 readScale(const JsonCursor& cursor) {
     const glm::dvec3 scale = cursor.is(JsonValue::Type::number)
                                  ? glm::dvec3(cursor.number(-kMaxCoordinate, kMaxCoordinate))
@@ -45,7 +40,8 @@ std::array<float, 3> readColour(const JsonCursor& cursor) {
     if (cursor.is(JsonValue::Type::object)) {
         cursor.expectKeys({"srgb"});
         const glm::dvec3 c = cursor.require("srgb").vector(0, 1);
-        return {linearFromSrgb(c.x), linearFromSrgb(c.y), linearFromSrgb(c.z)};
+        return {float(det::linearFromSrgb(c.x)), float(det::linearFromSrgb(c.y)),
+                float(det::linearFromSrgb(c.z))};
     }
     const glm::dvec3 c = cursor.vector(0, kMaxLight);
     return {float(c.x), float(c.y), float(c.z)};

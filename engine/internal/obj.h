@@ -33,6 +33,10 @@ struct ObjModel {
 Result<ObjModel> loadObj(const std::filesystem::path& file,
                          const std::filesystem::path& cache_folder = {});
 
+/// The same from text that comes from nowhere in particular: `name` stands for it in messages, and
+/// what it names is looked for beside that.
+Result<ObjModel> parseObjModel(std::string text, const std::filesystem::path& name);
+
 /// Moves the model's assets to the end of the scene's, with indices adjusted, and returns the
 /// number of its mesh. Adds no object.
 uint32_t appendModel(Scene& scene, ObjModel&& model, std::string name);

@@ -335,6 +335,7 @@ Result<Scene> SceneFileReader::read() {
     }
     const auto light = root_.find("light");
     const auto lights = root_.find("lights");
+    scene_.automatic_light = !light && !lights;
     if (light && lights) {
         light->refuse("expected either \"light\" or \"lights\"");
     } else if (light) {
@@ -383,6 +384,12 @@ Result<Scene> loadSceneFile(const std::filesystem::path& file,
     return SceneFileReader(file, cache_folder, *tree).read().map([&](Scene scene) {
         scene.files.push_back(file.string());
         return scene;
+    });
+}
+
+Result<Scene> parseSceneFile(const std::string& text, const std::filesystem::path& name) {
+    return parseJson(text, name).and_then([&](const JsonValue& tree) {
+        return SceneFileReader(name, {}, tree).read();
     });
 }
 

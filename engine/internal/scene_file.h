@@ -12,6 +12,10 @@ namespace still {
 Result<Scene> loadSceneFile(const std::filesystem::path& file,
                             const std::filesystem::path& cache_folder);
 
+/// The same from text; `name` stands for it in messages, and what it names is looked for beside
+/// that.
+Result<Scene> parseSceneFile(const std::string& text, const std::filesystem::path& name);
+
 /// Daylight from the right, above and in front, for files that say nothing: a white surface that
 /// faces the sun is 0.25 + 0.75 = 1.
 SceneLights defaultLights();

@@ -56,6 +56,15 @@ enum ShadeFeature : uint8_t {
     kShadeHeightMap = 16,
 };
 
+/// The smallest kernel that covers them: 0 = plain colours, 1 = textures, 2 = everything but height
+/// maps, 3 = with them.
+constexpr int shadeLevel(uint8_t features) {
+    return (features & kShadeHeightMap) != 0                      ? 3
+           : (features & (kShadeNormalMap | kShadePosition)) != 0 ? 2
+           : (features & kShadeTexture) != 0                      ? 1
+                                                                  : 0;
+}
+
 constexpr int kAttributeStride = sizeof(VertexAttributes) / sizeof(float);
 constexpr int kTangentStride = sizeof(VertexTangent) / sizeof(float);
 

@@ -145,8 +145,7 @@ HWY_NOINLINE void writeDepthAndMotion(const TileContext& tile) {
     }
 }
 
-/// Levels of specialisation: 0 = plain colours, 1 = textures, 2 = everything but height maps, 3 =
-/// with them.
+/// kLevel: shadeLevel().
 template <int kLevel, bool kUniform>
 HWY_INLINE GroupOutput shadeSurface(const TileContext& tile, FVec x, FVec y,
                                     const LaneTriangles<kUniform>& t, uint32_t surface) {
@@ -400,14 +399,15 @@ HWY_NOINLINE void shadeTileLevel(const TileContext& tile) {
 }
 
 void shadeTile(const TileContext& tile) {
-    if ((tile.features & kShadeHeightMap) != 0) {
-        shadeTileLevel<3>(tile);
-    } else if ((tile.features & (kShadeNormalMap | kShadePosition)) != 0) {
-        shadeTileLevel<2>(tile);
-    } else if ((tile.features & kShadeTexture) != 0) {
-        shadeTileLevel<1>(tile);
-    } else {
-        shadeTileLevel<0>(tile);
+    switch (shadeLevel(tile.features)) {
+        case 3:
+            return shadeTileLevel<3>(tile);
+        case 2:
+            return shadeTileLevel<2>(tile);
+        case 1:
+            return shadeTileLevel<1>(tile);
+        default:
+            return shadeTileLevel<0>(tile);
     }
 }
 
