@@ -13,17 +13,22 @@ namespace still::inspect {
 
 /// What a pane shows of its frame. Colours and ranges: README.md.
 enum class View : uint8_t {
-    picture,     ///< what the mode makes
-    sample,      ///< the sample of this frame alone
-    depth,       ///< of that sample
-    normal,      ///< of that sample
-    id,          ///< of that sample
-    motion,      ///< of that sample
-    count,       ///< samples that a pixel was made from
-    confidence,  ///< how much of a pixel is known
-    tiles,       ///< what was done for each tile of 64 × 64 pixels, and skipped
-    overdraw,    ///< triangles that lie over each other
-    error,       ///< distance from a supersampled picture that converges while all is still
+    picture,        ///< what the mode makes
+    sample,         ///< the sample of this frame alone
+    depth,          ///< of that sample
+    normal,         ///< of that sample
+    id,             ///< of that sample
+    motion,         ///< of that sample
+    history,        ///< the past as it is kept
+    reprojected,    ///< the past alone, at this frame's places
+    clipped,        ///< the same, held against the neighbourhood
+    neighbourhood,  ///< middle of the box that the past is held against
+    rejection,      ///< why, and how much of the past was not used
+    count,          ///< samples that a pixel was made from
+    confidence,     ///< how much of a pixel is known
+    tiles,          ///< what was done for each tile of 64 × 64 pixels, and skipped
+    overdraw,       ///< triangles that lie over each other
+    error,          ///< distance from a supersampled picture that converges while all is still
 };
 
 struct ViewInfo {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "demos/inspect/paint_rows.h"
+#include "demos/inspect/views.h"
 #include "engine/hash.h"
 
 namespace still::inspect {
@@ -109,6 +111,30 @@ const GBuffer& Pane::sample() {
         probed_frame_ = shown_frame_;
     }
     return probe_.gbuffer();
+}
+
+void Pane::paintStory(StoryPlane plane, ImageView<Rgb8> out) {
+    for (Image<uint16_t>* channel : {&planes_.red, &planes_.green, &planes_.blue}) {
+        channel->resize(out.width, out.height);
+    }
+    if (!loop_ || !loop_->storyPlane(
+                      plane, {planes_.red.view(), planes_.green.view(), planes_.blue.view()})) {
+        paintRows(out, workers_, [](int, int) { return Rgb8{}; });
+        return;
+    }
+    encodeOutput({planes_.red.view(), planes_.green.view(), planes_.blue.view()}, table_, out,
+                 workers_);
+}
+
+void Pane::paintRejections(ImageView<Rgb8> out) {
+    planes_.reason = {};  // zero is "taken"
+    planes_.lost = {};
+    planes_.reason.resize(out.width, out.height);
+    planes_.lost.resize(out.width, out.height);
+    if (loop_) {
+        loop_->rejections({planes_.reason.view(), planes_.lost.view()});
+    }
+    paintRejection(planes_.reason.view(), planes_.lost.view(), picture(), out, workers_);
 }
 
 ImageView<const uint16_t> Pane::overdraw() {

@@ -2,6 +2,7 @@
 // One of the pictures of a session: a mode at work on the film, and the view of it that is shown.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "demos/inspect/film.h"
@@ -44,6 +45,13 @@ class Pane {
     /// The G-buffer sample that the mode read for the frame shown, with all planes.
     const GBuffer& sample();
     ImageView<const uint16_t> overdraw();
+    /// Encodes a plane of the story; black where the mode has no past.
+    void paintStory(StoryPlane plane, ImageView<Rgb8> out);
+    /// See views.h; the picture in grey where the mode has no past.
+    void paintRejections(ImageView<Rgb8> out);
+    std::optional<PixelStory> story(int x, int y) const {
+        return loop_ ? loop_->story(x, y) : std::nullopt;
+    }
     /// Of each tile; for ssaa:N all are drawn and resolved until it is complete.
     std::vector<TileWork> tileWork() const;
     /// Where the samples of the mode lie in this frame's pixels, all of its period.
@@ -64,6 +72,11 @@ class Pane {
     std::unique_ptr<Reference> reference_;  ///< ssaa:N
     Probe probe_;
     int probed_frame_ = -1;
+    struct StoryImages {
+        Image<uint16_t> red, green, blue;
+        Image<Verdict> reason;
+        Image<uint8_t> lost;
+    } planes_;  ///< only while a view shows them
     FrameResult result_{};
     StageTimes times_{};
     int first_frame_ = -1, shown_frame_ = -1;

@@ -123,6 +123,10 @@ void Session::pick(int x, int y) {
                                       std::clamp(pixel.y, 0, renderHeight() - 1)};
 }
 
+std::optional<PickedStory> Session::pickedStory() {
+    return state_->pickedStory();
+}
+
 std::optional<SurfacePoint> Session::surfaceAt(int x, int y) {
     return state_->surfaceAt(x, y);
 }

@@ -16,6 +16,7 @@
 
 #include "demos/inspect/look.h"
 #include "demos/inspect/rig.h"
+#include "demos/inspect/story_text.h"
 #include "engine/frame_loop.h"
 #include "engine/scene.h"
 #include "rasterizer/workers.h"
@@ -102,6 +103,8 @@ class Session {
     Look& look();
     int paneAt(int x) const;  ///< under a pixel of the window
     void pick(int x, int y);  ///< the pixel under a pixel of the window
+    /// Of the picked pixel, as it is in the last picture; see story_text.h for words and a plot.
+    std::optional<PickedStory> pickedStory();
 
     /// The next picture. When nothing has changed and both panes are finished, nothing is done.
     Drawn draw();

@@ -42,6 +42,16 @@ void Session::State::paintView(Slot& slot) {
             return paintId(pane.sample(), out, workers);
         case View::motion:
             return paintMotion(pane.sample(), out, workers);
+        case View::history:
+            return pane.paintStory(StoryPlane::history, out);
+        case View::reprojected:
+            return pane.paintStory(StoryPlane::reprojected, out);
+        case View::clipped:
+            return pane.paintStory(StoryPlane::rectified, out);
+        case View::neighbourhood:
+            return pane.paintStory(StoryPlane::box_middle, out);
+        case View::rejection:
+            return pane.paintRejections(out);
         case View::count:
             return paintCount(result.sample_count, result.confidence_full, out, workers);
         case View::confidence:
@@ -122,6 +132,43 @@ void Session::State::compose() {
     }
 }
 
+/// Index into Scene::objects of a surface's object.
+int Session::State::objectOf(int surface) const {
+    int first = 1, index = 0;
+    for (const SceneObject& object : film.scene.objects) {
+        first += int(film.scene.meshes[object.mesh].parts.size());
+        if (surface < first) {
+            break;
+        }
+        ++index;
+    }
+    return index;
+}
+
+std::optional<PickedStory> Session::State::pickedStory() {
+    if (!look.picked || !slots[size_t(look.picked->pane)].pane) {
+        return std::nullopt;
+    }
+    const PickedPixel at = *look.picked;
+    Pane& pane = *slots[size_t(at.pane)].pane;
+    if (pane.shownFrame() < 0) {
+        return std::nullopt;
+    }
+    PickedStory story{.pixel = at,
+                      .mode = pane.mode(),
+                      .output = pane.picture().at(at.x, at.y),
+                      .jitter_x_fx8 = pane.jitter().x_fx8,
+                      .jitter_y_fx8 = pane.jitter().y_fx8,
+                      .samples = pane.samples(),
+                      .taa = pane.story(at.x, at.y)};
+    const int surface = pane.sample().id.at(at.x, at.y) & kSurfaceMask;
+    if (surface > 0) {
+        story.surface = std::to_string(surface) + ", object " +
+                        film.scene.objects[size_t(objectOf(surface))].name;
+    }
+    return story;
+}
+
 std::optional<SurfacePoint> Session::State::surfaceAt(int x, int y) {
     const LensPixel pixel = renderPixel(x, y);
     if (film.lastFrame() < 0 || pixel.x < 0 || pixel.y < 0 || pixel.x >= renderWidth() ||
@@ -133,16 +180,7 @@ std::optional<SurfacePoint> Session::State::surfaceAt(int x, int y) {
     if (surface == 0) {
         return std::nullopt;
     }
-    SurfacePoint point{.surface = surface};
-    int first = 1;
-    for (const SceneObject& object : film.scene.objects) {
-        const int parts = int(film.scene.meshes[object.mesh].parts.size());
-        if (surface < first + parts) {
-            break;
-        }
-        first += parts;
-        ++point.object;
-    }
+    SurfacePoint point{.surface = surface, .object = objectOf(surface)};
     const FrameState state =
         frameStateAt(film.scene, film.camera(), film.lastFrame(), renderWidth(), renderHeight());
     const double depth = double(std::bit_cast<float>(centre.depth.at(pixel.x, pixel.y)));

@@ -65,6 +65,8 @@ struct Session::State {
     void compose();
     void magnify();
     void markPicked();
+    int objectOf(int surface) const;
+    std::optional<PickedStory> pickedStory();
     std::optional<SurfacePoint> surfaceAt(int x, int y);
 };
 

@@ -189,6 +189,41 @@ Rgb8 heatColour(int value) {
     return {channel(0), channel(1), channel(2)};
 }
 
+Rgb8 verdictColour(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::taken:
+            return kNothing;
+        case Verdict::no_history:
+            return {255, 255, 255};
+        case Verdict::off_screen:
+            return {0, 220, 220};
+        case Verdict::depth:
+            return {230, 30, 30};
+        case Verdict::normal:
+            return {0, 190, 50};
+        case Verdict::id:
+            return {245, 225, 0};
+        case Verdict::colour:
+            return {230, 0, 220};
+        case Verdict::velocity:
+            return {255, 140, 0};
+        case Verdict::epoch:
+            return {40, 80, 255};
+        case Verdict::seam:
+            return {140, 80, 30};
+    }
+    return kNothing;
+}
+
+void paintRejection(ImageView<const Verdict> reason, ImageView<const uint8_t> lost,
+                    ImageView<const Rgb8> picture, ImageView<Rgb8> out, Workers& workers) {
+    paintRows(out, workers, [&](int x, int y) {
+        const Rgb8 under = blend(greyOf(picture.at(x, y)), kNothing, 96);
+        const int part = lost.at(x, y);
+        return part == 0 ? under : blend(under, verdictColour(reason.at(x, y)), 96 + part * 5 / 8);
+    });
+}
+
 Rgb8 tileColour(const TileWork& work) {
     if (!work.drawn) {
         return {0, 160, 60};

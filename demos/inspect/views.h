@@ -22,6 +22,9 @@ void paintMotion(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintCount(ImageView<const uint8_t> count, int full, ImageView<Rgb8> out, Workers& workers);
 void paintConfidence(ImageView<const uint8_t> confidence, int full, ImageView<Rgb8> out,
                      Workers& workers);
+/// The picture in grey, under verdictColour() the more the more was lost.
+void paintRejection(ImageView<const Verdict> reason, ImageView<const uint8_t> lost,
+                    ImageView<const Rgb8> picture, ImageView<Rgb8> out, Workers& workers);
 /// The picture in grey under a colour for each tile's work.
 void paintTiles(std::span<const TileWork> tiles, ImageView<const Rgb8> picture, ImageView<Rgb8> out,
                 Workers& workers);
@@ -34,6 +37,8 @@ Rgb8 surfaceColour(uint32_t surface);
 /// Direction as colour, speed as saturation and brightness: a wheel, full at kMotionFull_fx8.
 Rgb8 motionColour(Motion motion);
 constexpr int kMotionFull_fx8 = 16 * 256;
+/// One for each reason of rejection.
+Rgb8 verdictColour(Verdict verdict);
 /// Not drawn: green. Drawn, but neither recorded nor resolved: yellow. Recorded: orange. Resolved:
 /// red.
 Rgb8 tileColour(const TileWork& work);
