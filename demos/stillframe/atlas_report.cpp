@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "demos/stillframe/page_parts.h"
+
 namespace still::command {
 namespace {
 
@@ -47,23 +49,6 @@ Json resultJson(const AtlasResult& result) {
     return json;
 }
 
-std::string base64(const std::string& bytes) {
-    constexpr const char* kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t word = 0;
-        for (size_t k = 0; k < 3; ++k) {
-            word = word << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
-        }
-        for (size_t k = 0; k < 4; ++k) {
-            const bool there = i + k <= bytes.size();
-            text += there ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-        }
-    }
-    return text;
-}
-
 Json caseJson(const AtlasCase& atlas_case) {
     Json json{{"name", atlas_case.name},
               {"failure", atlas_case.failure},
@@ -88,7 +73,7 @@ Json cellJson(const AtlasResult& result) {
         json["rms"].push_back(std::round(frame.rms * 100) / 100);
         json["frame_flip"].push_back(std::round(frame.flip * 10000) / 10000);
     }
-    json["crop"] = "data:image/png;base64," + base64(m.crop_png);
+    json["crop"] = pngDataUri(m.crop_png);
     json["crop_at"] = {m.crop_frame, m.crop_x, m.crop_y};
     return json;
 }
@@ -143,12 +128,7 @@ std::string atlasPageData(const AtlasReport& report) {
     for (const AtlasResult& result : report.results) {
         json["results"].push_back(cellJson(result));
     }
-    // "</script>" must not appear inside the element.
-    std::string text;
-    for (char c : json.dump()) {
-        text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-    }
-    return text;
+    return scriptText(json.dump());
 }
 
 }  // namespace still::command

@@ -25,6 +25,8 @@ Subcommand declarePresets(CLI::App& app);
 Subcommand declareAtlas(CLI::App& app);
 Subcommand declareChart(CLI::App& app);
 Subcommand declareBench(CLI::App& app);
+// cli_golden.cpp
+Subcommand declareGolden(CLI::App& app);
 
 constexpr int kMaxFrames = 1000000;
 

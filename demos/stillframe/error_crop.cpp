@@ -1,12 +1,8 @@
 #include "demos/stillframe/error_crop.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <vector>
-
-#include "demos/stillframe/png.h"
 
 namespace still::command {
 namespace {
@@ -89,19 +85,6 @@ void ErrorCrop::cut(ImageView<const Rgb8> picture, ImageView<const Rgb8> referen
                                            brightened(p.b, q.b)};
         }
     }
-}
-
-Outcome<std::string> pngBytes(ImageView<const Rgb8> image) {
-    char* memory = nullptr;
-    size_t size = 0;
-    std::FILE* stream = open_memstream(&memory, &size);
-    if (stream == nullptr) {
-        return fileError("a picture in memory: cannot be made");
-    }
-    const Outcome<void> written = writePng(stream, "a picture in memory", image);
-    std::fclose(stream);
-    const std::unique_ptr<char, decltype(&std::free)> owner(memory, &std::free);
-    return written.map([&] { return std::string(memory, size); });
 }
 
 }  // namespace still::command

@@ -2,9 +2,7 @@
 // The place where a picture is farthest from its reference, cut out for people to look at.
 
 #include <cstdint>
-#include <string>
 
-#include "demos/stillframe/outcome.h"
 #include "rasterizer/image.h"
 
 namespace still::command {
@@ -31,8 +29,5 @@ class ErrorCrop {
     int frame_ = 0, x_ = 0, y_ = 0;
     Image<Rgb8> strip_;
 };
-
-/// A PNG file in memory.
-Outcome<std::string> pngBytes(ImageView<const Rgb8> image);
 
 }  // namespace still::command

@@ -28,9 +28,9 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", "stillframe " STILL_VERSION);
     app.require_subcommand(1);
     app.footer(kExitCodes);
-    const std::vector<Subcommand> subcommands{declareRender(app), declareCompare(app),
-                                              declareAtlas(app),  declareChart(app),
-                                              declareBench(app),  declarePresets(app)};
+    const std::vector<Subcommand> subcommands{
+        declareRender(app), declareCompare(app), declareAtlas(app), declareChart(app),
+        declareBench(app),  declarePresets(app), declareGolden(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -4,7 +4,9 @@
 
 #include <cerrno>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
 
 namespace still::command {
 namespace {
@@ -64,6 +66,19 @@ Outcome<void> writePng(std::FILE* stream, const std::string& name, ImageView<con
         return fileError(name + ": cannot write: " + error.text);
     }
     return {};
+}
+
+Outcome<std::string> pngBytes(ImageView<const Rgb8> image) {
+    char* memory = nullptr;
+    size_t size = 0;
+    std::FILE* stream = open_memstream(&memory, &size);
+    if (stream == nullptr) {
+        return fileError("a picture in memory: cannot be made");
+    }
+    const Outcome<void> written = writePng(stream, "a picture in memory", image);
+    std::fclose(stream);
+    const std::unique_ptr<char, decltype(&std::free)> owner(memory, &std::free);
+    return written.map([&] { return std::string(memory, size); });
 }
 
 Outcome<void> savePng(const std::filesystem::path& path, ImageView<const Rgb8> image,

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "demos/stillframe/output_file.h"
 #include "rasterizer/image.h"
@@ -12,6 +13,9 @@ namespace still::command {
 
 /// Writes a whole PNG to `stream` and flushes it; `name` is used in messages.
 Outcome<void> writePng(std::FILE* stream, const std::string& name, ImageView<const Rgb8> image);
+
+/// The same into memory.
+Outcome<std::string> pngBytes(ImageView<const Rgb8> image);
 
 /// The same to a file that appears only when it is complete.
 Outcome<void> savePng(const std::filesystem::path& path, ImageView<const Rgb8> image,

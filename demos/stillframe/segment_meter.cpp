@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "demos/stillframe/png.h"
 #include "postfx/flip.h"
 
 namespace still::command {

@@ -1,0 +1,373 @@
+#include "engine/golden.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+#include <thread>
+
+#include "engine/hash.h"
+#include "engine/image_file.h"
+#include "engine/internal/obj_text.h"
+#include "engine/jitter.h"
+#include "engine/load.h"
+#include "postfx/metrics.h"
+
+namespace still::golden {
+namespace {
+
+Image<Rgb8> copyOf(ImageView<const Rgb8> from) {
+    Image<Rgb8> image(from.width, from.height);
+    for (int y = 0; y < from.height; ++y) {
+        std::copy_n(from.row(y), from.width, image.view().row(y));
+    }
+    return image;
+}
+
+std::string sizeText(int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+}
+
+std::string framesText(const std::vector<int>& frames) {
+    return frames.size() == 1
+               ? "frame " + std::to_string(frames[0])
+               : std::to_string(frames.size()) + " frames from " + std::to_string(frames.front()) +
+                     " to " + std::to_string(frames.back());
+}
+
+std::string shown(Rgb8 colour) {
+    return std::to_string(colour.r) + " " + std::to_string(colour.g) + " " +
+           std::to_string(colour.b);
+}
+
+Result<Scene> openScene(const Manifest& manifest, const Case& golden_case, const Options& options) {
+    constexpr std::string_view kBuiltin = "builtin:";
+    if (!golden_case.scene.starts_with(kBuiltin)) {
+        return loadScene(manifest.folder / golden_case.scene, options.cache_folder);
+    }
+    if (!options.builtin) {
+        return fail(golden_case.place + "/scene: expected a file, found " +
+                    shownText(golden_case.scene) + ": no built-in scenes are known here");
+    }
+    return options.builtin(golden_case.scene.substr(kBuiltin.size()))
+        .map_error([&](const Error& error) {
+            return Error{golden_case.place + "/scene: " + error.message};
+        });
+}
+
+Result<int> findView(const Scene& scene, const Case& golden_case) {
+    std::string known;
+    for (size_t i = 0; i < scene.views.size(); ++i) {
+        if (scene.views[i].name == golden_case.view) {
+            return int(i);
+        }
+        known += (i == 0 ? "" : ", ") + shownText(scene.views[i].name);
+    }
+    if (golden_case.view.empty()) {
+        return -1;
+    }
+    return fail(golden_case.place + "/view: expected one of the scene's views " + known +
+                ", found " + shownText(golden_case.view));
+}
+
+/// What a case needs to be rendered; `settings` points into it.
+struct Opened {
+    Scene scene;
+    CameraFile cameras;
+    FrameSettings settings;
+};
+
+/// Everything that comes from files.
+Result<void> open(const Manifest& manifest, const Case& golden_case, const Options& options,
+                  Opened& opened) {
+    opened.settings = golden_case.settings;
+    opened.settings.simd = options.simd;
+    auto scene = openScene(manifest, golden_case, options);
+    if (!scene) {
+        return tl::make_unexpected(scene.error());
+    }
+    opened.scene = std::move(*scene);
+    frameForAspect(opened.scene, opened.settings.width, opened.settings.height);
+    const auto view = findView(opened.scene, golden_case);
+    if (!view) {
+        return tl::make_unexpected(view.error());
+    }
+    CameraChoice& camera = opened.settings.camera;
+    camera.view = *view;
+    if (!golden_case.cameras.empty()) {
+        auto cameras = loadCameraFile(manifest.folder / golden_case.cameras);
+        if (!cameras) {
+            return tl::make_unexpected(cameras.error());
+        }
+        opened.cameras = std::move(*cameras);
+        camera.file = &opened.cameras;
+    }
+    const bool finished = golden_case.frames == std::vector<int>{0} &&
+                          opened.settings.anti_aliasing == AntiAliasing::taa &&
+                          isStill(opened.scene, camera);
+    opened.settings.subframes = golden_case.samples.value_or(finished ? int(kTaaPeriod) : 1);
+    return {};
+}
+
+/// Takes the expected picture in if it is the recorded one, and compares.
+void comparePictures(const std::filesystem::path& file, const StageHash& recorded,
+                     FrameDifference& difference) {
+    auto expected = readImageFile(file);
+    if (!expected || hashPlane(std::as_const(*expected).view()) != recorded.whole) {
+        return;
+    }
+    difference.expected = std::move(*expected);
+    const ImageView<const Rgb8> a = std::as_const(difference.expected).view();
+    const ImageView<const Rgb8> b = std::as_const(difference.actual).view();
+    uint64_t pixels = 0;
+    for (int y = 0; y < a.height; ++y) {
+        for (int x = 0; x < a.width; ++x) {
+            if (a.at(x, y) != b.at(x, y) && pixels++ == 0) {
+                difference.first_x = x;
+                difference.first_y = y;
+            }
+        }
+    }
+    difference.pixels = pixels;
+    difference.psnr_db = psnrDb(pixelError(a, b));
+}
+
+std::string placeText(const FrameDifference& difference) {
+    const StageDifference& stages = difference.stages;
+    std::string text = "frame " + std::to_string(difference.frame) + ": " + name(stages.stage) +
+                       " is the first stage that differs";
+    if (stages.tiles.empty()) {
+        return text;
+    }
+    const TileRectangle tile =
+        tileRectangle(stages.tiles.front(), difference.width, difference.height);
+    text += ", in tile (" + std::to_string(tile.tile_x) + ", " + std::to_string(tile.tile_y) +
+            "), pixels " + std::to_string(tile.x) + "," + std::to_string(tile.y) + " to " +
+            std::to_string(tile.x + tile.width - 1) + "," +
+            std::to_string(tile.y + tile.height - 1);
+    const size_t more = stages.tiles.size() - 1;
+    return more == 0 ? text
+                     : text + " and " + std::to_string(more) + " more tile" + (more > 1 ? "s" : "");
+}
+
+std::string pixelsText(const Manifest& manifest, const std::string& name,
+                       const FrameDifference& difference) {
+    if (!difference.pixels) {
+        return shownPath(pictureFile(manifest, name, difference.frame)) +
+               " is not there or not as recorded, so no pixels are compared";
+    }
+    if (*difference.pixels == 0) {
+        return "no pixel of the picture differs";
+    }
+    const int x = difference.first_x, y = difference.first_y;
+    char psnr[32];
+    std::snprintf(psnr, sizeof psnr, "%.1f", difference.psnr_db);
+    return std::to_string(*difference.pixels) + (*difference.pixels > 1 ? " pixels" : " pixel") +
+           ", the first at " + std::to_string(x) + "," + std::to_string(y) + ": " +
+           shown(difference.actual.at(x, y)) + ", expected " + shown(difference.expected.at(x, y)) +
+           "; PSNR " + psnr + " dB";
+}
+
+/// Compares frame by frame while a case is rendered.
+class Comparison {
+  public:
+    Comparison(const Manifest& manifest, const Case& golden_case, const Record& record,
+               CaseVerdict& verdict)
+        : manifest_(manifest), case_(golden_case), record_(record), verdict_(verdict) {}
+
+    void add(const Record::Frame& actual, const FrameResult& result) {
+        const Record::Frame& expected = record_.frames[size_t(verdict_.frames++)];
+        auto stages = firstDifference(expected.stages, actual.stages);
+        if (!stages) {
+            return;
+        }
+        if (verdict_.differing++ > 0) {
+            return;
+        }
+        verdict_.finding = Finding::differs;
+        FrameDifference& first = verdict_.first.emplace();
+        first.frame = actual.frame;
+        first.width = record_.width;
+        first.height = record_.height;
+        first.stages = std::move(*stages);
+        first.actual = copyOf(result.output);
+        comparePictures(pictureFile(manifest_, case_.name, actual.frame),
+                        expected.stages[size_t(Stage::output)], first);
+    }
+
+    std::string message() const {
+        const std::string some = std::to_string(verdict_.differing) + " of " +
+                                 std::to_string(verdict_.frames) + " frames differ";
+        return case_.name + ": " + placeText(*verdict_.first) + "; " +
+               pixelsText(manifest_, case_.name, *verdict_.first) +
+               (verdict_.frames > 1 ? "; " + some : "");
+    }
+
+  private:
+    const Manifest& manifest_;
+    const Case& case_;
+    const Record& record_;
+    CaseVerdict& verdict_;
+};
+
+CaseVerdict found(const Case& golden_case, Finding finding, const std::string& what) {
+    CaseVerdict verdict;
+    verdict.name = golden_case.name;
+    verdict.finding = finding;
+    verdict.message = golden_case.name + ": " + what;
+    return verdict;
+}
+
+/// Whether the recording is of what the manifest asks for; else what is wrong with it.
+std::string mismatch(const Case& golden_case, const Record& record) {
+    const FrameSettings& settings = golden_case.settings;
+    if (settings.width != record.width || settings.height != record.height) {
+        return "recorded at " + sizeText(record.width, record.height) + ", expected " +
+               sizeText(settings.width, settings.height);
+    }
+    std::vector<int> frames;
+    for (const Record::Frame& frame : record.frames) {
+        frames.push_back(frame.frame);
+    }
+    return frames == golden_case.frames
+               ? ""
+               : "recorded " + framesText(frames) + ", expected " + framesText(golden_case.frames);
+}
+
+/// A word for the shell.
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+               std::string_view("-_./,:+").find(c) != std::string_view::npos;
+    });
+    std::string text = "'";
+    for (const char c : word) {
+        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return plain ? word : text + "'";
+}
+
+}  // namespace
+
+std::filesystem::path recordFile(const Manifest& manifest, const std::string& name) {
+    return manifest.folder / (name + ".hashes");
+}
+
+std::filesystem::path pictureFile(const Manifest& manifest, const std::string& name, int frame) {
+    char number[16];
+    std::snprintf(number, sizeof number, ".%04d.png", frame);
+    return manifest.folder / (name + number);
+}
+
+TileRectangle tileRectangle(int tile, int width, int height) {
+    const int across = (width + kTileSize - 1) / kTileSize;
+    TileRectangle r{.tile_x = tile % across, .tile_y = tile / across};
+    r.x = r.tile_x * kTileSize;
+    r.y = r.tile_y * kTileSize;
+    r.width = std::min(kTileSize, width - r.x);
+    r.height = std::min(kTileSize, height - r.y);
+    return r;
+}
+
+Result<Record> renderCase(const Manifest& manifest, const Case& golden_case, const Options& options,
+                          const FrameSink& sink) {
+    Opened opened;
+    if (auto done = open(manifest, golden_case, options, opened); !done) {
+        return tl::make_unexpected(done.error());
+    }
+    for (const auto* warnings : {&opened.scene.warnings, &opened.cameras.warnings}) {
+        for (const std::string& warning : *warnings) {
+            if (options.warn) {
+                options.warn(warning);
+            }
+        }
+    }
+    const int cores = std::max(1, int(std::thread::hardware_concurrency()));
+    Workers workers(options.threads > 0 ? options.threads : cores);
+    FrameLoop loop(opened.scene, opened.settings, workers);
+    Record record{opened.settings.width, opened.settings.height, {}};
+    for (const int frame : golden_case.frames) {
+        const FrameResult result = loop.render(frame);
+        record.frames.push_back({frame, hashStages(result)});
+        if (sink) {
+            if (auto taken = sink(record.frames.back(), result); !taken) {
+                return tl::make_unexpected(taken.error());
+            }
+        }
+        if (options.frame_done) {
+            options.frame_done();
+        }
+    }
+    return record;
+}
+
+CaseVerdict verifyCase(const Manifest& manifest, const Case& golden_case, const Options& options) {
+    const std::filesystem::path file = recordFile(manifest, golden_case.name);
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        return found(golden_case, Finding::no_golden, shownPath(file) + " is not there");
+    }
+    const Result<Record> record = readRecord(file);
+    if (!record) {
+        return found(golden_case, Finding::error, record.error().message);
+    }
+    if (const std::string wrong = mismatch(golden_case, *record); !wrong.empty()) {
+        return found(golden_case, Finding::no_golden, shownPath(file) + ": " + wrong);
+    }
+    CaseVerdict verdict;
+    verdict.name = golden_case.name;
+    Comparison comparison(manifest, golden_case, *record, verdict);
+    const auto rendered = renderCase(manifest, golden_case, options,
+                                     [&](const Record::Frame& frame, const FrameResult& result) {
+                                         comparison.add(frame, result);
+                                         return Result<void>();
+                                     });
+    if (!rendered) {
+        return found(golden_case, Finding::error, rendered.error().message);
+    }
+    if (verdict.finding == Finding::differs) {
+        verdict.message = comparison.message();
+    }
+    return verdict;
+}
+
+std::string acceptCommand(const std::filesystem::path& folder,
+                          const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) {
+        list += (list.empty() ? "" : ",") + name;
+    }
+    return "stillframe golden record " + quoted(folder.string()) + " --only " + list;
+}
+
+std::ostream& operator<<(std::ostream& stream, const Verdict& verdict) {
+    return stream << verdict.message;
+}
+
+Verdict verify(const std::filesystem::path& folder, const Options& options) {
+    const Result<Manifest> manifest = readManifest(folder);
+    if (!manifest) {
+        return {false, manifest.error().message, {}};
+    }
+    const auto chosen = chosenCases(*manifest, options);
+    if (!chosen) {
+        return {false, chosen.error().message, {}};
+    }
+    Verdict verdict;
+    for (const std::string& warning : manifest->warnings) {
+        verdict.message += "warning: " + warning + "\n";
+    }
+    for (const Case* golden_case : *chosen) {
+        const CaseVerdict one = verifyCase(*manifest, *golden_case, options);
+        if (one.finding != Finding::equal) {
+            verdict.failed.push_back(one.name);
+            verdict.message += one.message + "\n";
+        }
+    }
+    verdict.ok = verdict.failed.empty();
+    verdict.message += verdict.ok ? "golden: " + std::to_string(chosen->size()) + " equal"
+                                  : "accept with: " + acceptCommand(folder, verdict.failed);
+    return verdict;
+}
+
+}  // namespace still::golden
