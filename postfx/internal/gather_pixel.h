@@ -35,12 +35,12 @@ struct Window {
     int slide = 0;          ///< … by this much per frame (1/256 pixel, larger axis)
 };
 
-/// One sample near the pixel's centre.
+/// One sample near the pixel's centre. Written whole: zeros would cost more than they are worth.
 struct Tap {
-    int weight = 0;
-    int ex = 0, ey = 0;   ///< its place, 1/64 pixel
-    bool behind = false;  ///< shows what is behind the owner
-    int rgb[3] = {};
+    int weight;
+    int ex, ey;   ///< its place, 1/64 pixel
+    bool behind;  ///< shows what is behind the owner
+    int rgb[3];
 };
 
 struct Taps {
