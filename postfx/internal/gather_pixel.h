@@ -83,10 +83,13 @@ struct GatherSteps {
     int rgb[3] = {};
 };
 
-/// Makes the pixel's colour. Reads and does not write, so it may be asked again; every slot's
+/// Collects the pixel's taps. Reads and does not write, so it may be asked again; every slot's
 /// record is complete. What was met is written to `sightings` unless that is null.
-void gatherSteps(const Job& job, int x, int y, GatherSteps& steps,
-                 PixelSightings* sightings = nullptr) noexcept;
+void gatherTaps(const Job& job, int x, int y, GatherSteps& steps,
+                PixelSightings* sightings = nullptr) noexcept;
+
+/// Then makes its colour.
+void gatherColour(const Job& job, int x, int y, GatherSteps& steps) noexcept;
 
 /// The samples' plane at the pixel's centre. `behind`, unless null, replaces the colours of taps
 /// behind. False when they weigh next to nothing.

@@ -332,14 +332,17 @@ void mixSpatial(const Job& job, int x, int y, int old_weight, int rgb[3]) noexce
     }
 }
 
-void gatherSteps(const Job& job, int x, int y, GatherSteps& s, PixelSightings* sightings) noexcept {
+void gatherTaps(const Job& job, int x, int y, GatherSteps& s, PixelSightings* sightings) noexcept {
     s.seen = inferOwner(job, x, y, seenOwner(job, x, y));
     s.window = lookAround(job, x, y, s.seen);
     if (s.window.apart) {
         collectFar(job, x, y, s.window, s.far, sightings != nullptr ? &sightings->far : nullptr);
-        s.separate = fit(s.far, nullptr, s.behind);
     }
     collectOwn(job, x, y, s.window, s.own, sightings != nullptr ? &sightings->own : nullptr);
+}
+
+void gatherColour(const Job& job, int x, int y, GatherSteps& s) noexcept {
+    s.separate = s.window.apart && fit(s.far, nullptr, s.behind);
     if (!fit(s.own, s.separate ? s.behind : nullptr, s.rgb)) {
         for (int c = 0; c < 3; ++c) {
             s.rgb[c] = job.now.colour[c][y * job.stride + x];
@@ -353,7 +356,8 @@ void gatherSteps(const Job& job, int x, int y, GatherSteps& s, PixelSightings* s
 
 void gatherPixel(const Job& job, int x, int y) noexcept {
     GatherSteps steps;
-    gatherSteps(job, x, y, steps);
+    gatherTaps(job, x, y, steps);
+    gatherColour(job, x, y, steps);
     const ptrdiff_t at = y * job.stride + x;
     for (int c = 0; c < 3; ++c) {
         job.shown[c][at] = uint16_t(steps.rgb[c]);

@@ -62,9 +62,9 @@ Taps pastOf(const Taps& all) {
 /// The pixel without this frame's samples.
 StoryColour colourOfPast(const Job& job, int x, int y) {
     GatherSteps steps;
-    gatherSteps(job, x, y, steps);
+    gatherTaps(job, x, y, steps);
     int behind[3] = {}, rgb[3] = {};
-    const bool separate = steps.separate && fit(pastOf(steps.far), nullptr, behind);
+    const bool separate = steps.window.apart && fit(pastOf(steps.far), nullptr, behind);
     return fit(pastOf(steps.own), separate ? behind : nullptr, rgb) ? told(rgb) : StoryColour{};
 }
 
@@ -118,7 +118,8 @@ void tellWay(const Job& job, const Sightings& sightings, const Taps& taps, bool 
 void tellGathered(const Job& job, int x, int y, PixelStory& story) {
     GatherSteps steps;
     PixelSightings met;
-    gatherSteps(job, x, y, steps, &met);
+    gatherTaps(job, x, y, steps, &met);
+    gatherColour(job, x, y, steps);
     story.output = told(steps.rgb);
     story.layered = steps.window.layered;
     story.apart = steps.window.apart;
@@ -201,7 +202,7 @@ StoryLoss tellLoss(const Job& job, PixelSource source, int x, int y) {
     }
     GatherSteps steps;
     PixelSightings met;
-    gatherSteps(job, x, y, steps, &met);
+    gatherTaps(job, x, y, steps, &met);
     return lossOf(met.own);
 }
 
