@@ -47,7 +47,10 @@ void addTimeOptions(CLI::App& render, RenderOptions& o) {
     render.add_option("--frames", o.frames, "How many; default 1, or the camera file's")
         ->check(CLI::Range(1, kMaxFrames))
         ->type_name("N");
-    render.add_option("--start", o.start, "The first frame, default 0")
+    render
+        .add_option("--start", o.start,
+                    "The first frame, default 0. Typed, the frames are part of a run: the\n"
+                    "same bytes as among all others")
         ->check(CLI::Range(0, kMaxFrames))
         ->type_name("K");
     render.add_option("--fps", o.fps, "Speed of GIF and MP4, default 30")
@@ -61,6 +64,11 @@ void addTimeOptions(CLI::App& render, RenderOptions& o) {
                     "The camera circles its target by so much over the frames")
         ->check(CLI::Range(-36000.0, 36000.0))
         ->type_name("DEGREES");
+    render
+        .add_option("--orbit-frames", o.orbit_frames,
+                    "The frames that the orbit takes, default --frames; for parts of a run")
+        ->check(CLI::Range(1, kMaxFrames))
+        ->type_name("N");
 }
 
 void addMachineOptions(CLI::App& render, RenderOptions& o) {

@@ -122,17 +122,19 @@ Outcome<void> settleView(Job& job) {
     const Size size = options.resolution.value_or(Size{settings.width, settings.height});
     settings.width = size.width;
     settings.height = size.height;
+    job.start = options.start.value_or(0);
     job.frames = options.frames.value_or(job.frames);
     frameForAspect(job.scene, size.width, size.height);
-    settings.camera.orbit_frames = job.frames;
+    settings.camera.orbit_frames = options.orbit_frames.value_or(job.frames);
     return {};
 }
 
-/// A single picture of something that stands still is finished before it is handed out.
+/// A single picture of something that stands still is finished before it is handed out, unless it
+/// is part of a run.
 Outcome<void> settleSamples(Job& job) {
-    const bool finished = job.frames == 1 && job.settings.anti_aliasing == AntiAliasing::taa &&
-                          isStill(job.scene, job.settings.camera);
-    if (finished) {
+    const bool alone = job.frames == 1 && job.settings.anti_aliasing == AntiAliasing::taa &&
+                       isStill(job.scene, job.settings.camera);
+    if (alone && (job.options.samples || !job.options.start)) {
         job.settings.subframes = job.options.samples.value_or(int(kTaaPeriod));
     } else if (job.options.samples) {
         return usageError(

@@ -19,7 +19,7 @@ struct Job {
     std::vector<DumpPlane> dump;
     SinkKind sink = SinkKind::none;
     NamePattern name;  ///< of the pictures; with a number when there are several
-    int frames = 1;
+    int start = 0, frames = 1;
     int threads = 1;
 
     explicit Job(RenderOptions options_in) : options(std::move(options_in)) {}

@@ -20,10 +20,11 @@ struct RenderOptions {
     std::string output;              ///< empty: no picture is written
     std::optional<Size> resolution;  ///< empty: 1280x720, or the camera file's
     std::optional<int> frames;       ///< empty: 1, or the camera file's count
-    int start = 0;
+    std::optional<int> start;        ///< empty: 0; typed, the frames are part of a longer run
     std::string cameras;
     std::string view;
     double orbit_deg = 0;
+    std::optional<int> orbit_frames;  ///< of the whole run; empty: up to the last frame
     std::string anti_aliasing = "taa";
     std::string taa;             ///< comma-separated settings over the preset's
     std::optional<int> samples;  ///< of a finished picture; empty: 64

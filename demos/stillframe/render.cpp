@@ -77,7 +77,7 @@ Outcome<void> Run::writeDumps(int frame, const FrameResult& result) {
 Outcome<void> renderAll(const Job& job, Run& run) {
     const ProgressBar progress(job.frames);
     for (int i = 0; i < job.frames; ++i) {
-        if (auto rendered = run.renderFrame(job.options.start + i); !rendered) {
+        if (auto rendered = run.renderFrame(job.start + i); !rendered) {
             return rendered;
         }
         progress.show(i + 1);
@@ -103,7 +103,7 @@ Outcome<void> render(const RenderOptions& options, Interruption& interruption) {
         job.settings.clock_ms = nowMs;
     }
     const SinkSettings sink_settings{
-        job.sink, job.name, options.start, job.settings.width, job.settings.height, options.fps};
+        job.sink, job.name, job.start, job.settings.width, job.settings.height, options.fps};
     const auto sink = openSink(sink_settings, interruption);
     if (!sink) {
         return tl::make_unexpected(sink.error());

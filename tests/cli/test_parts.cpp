@@ -81,6 +81,33 @@ TEST_CASE("parts: --start K --frames N gives those frames of the whole run, in e
     }
 }
 
+TEST_CASE("parts: an orbit goes on in the next part when --orbit-frames tells its length",
+          "[cli]") {
+    const TempFolder folder;
+    const std::string base =
+        "stillframe render builtin:cubes --resolution 60x40 --hash --orbit 50 ";
+    const auto whole = linesOf(shell(folder.path(), base + "--frames 7").out);
+    REQUIRE(whole.size() == 7);
+    for (int start = 0; start < 7; ++start) {
+        const auto part = shell(
+            folder.path(), base + "--frames 1 --orbit-frames 7 --start " + std::to_string(start));
+        CHECK(part.out == whole[size_t(start)] + "\n");
+    }
+}
+
+TEST_CASE("parts: a frame of a scene at rest is not finished when it is part of a run", "[cli]") {
+    const TempFolder folder;
+    const std::string base = "stillframe render builtin:triangle --resolution 60x40 --hash ";
+    const auto whole = linesOf(shell(folder.path(), base + "--frames 3").out);
+    REQUIRE(whole.size() == 3);
+    for (int start = 0; start < 3; ++start) {
+        const std::string from = "--frames 1 --start " + std::to_string(start);
+        CHECK(shell(folder.path(), base + from).out == whole[size_t(start)] + "\n");
+        CHECK(shell(folder.path(), base + from + " --samples 64").out !=
+              whole[size_t(start)] + "\n");
+    }
+}
+
 TEST_CASE("parts: GNU parallel renders a run in parts as the README says, byte for byte", "[cli]") {
     const TempFolder folder;
     if (!hasParallel(folder)) {
