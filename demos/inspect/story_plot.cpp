@@ -58,6 +58,11 @@ std::vector<Point> pointsOf(const PixelStory& story, Tone tone) {
     return points;
 }
 
+/// Of small marks; large ones have twice this.
+int markRadius(int side) {
+    return std::max(1, side / 48);
+}
+
 /// One side of the space: a chroma across, luma up, the same scale for both.
 struct Side {
     ImageView<Rgb8> out;
@@ -79,7 +84,7 @@ struct Side {
     }
     void draw(const Point& point) const {
         const int px = x(point.ycocg), py = y(point.ycocg);
-        const int r = std::max(2, size / 48);
+        const int r = markRadius(size);
         for (int dy = -2 * r; dy <= 2 * r; ++dy) {
             for (int dx = -2 * r; dx <= 2 * r; ++dx) {
                 if (const auto colour = inkAt(point, dx, dy, r)) {
@@ -155,7 +160,7 @@ Image<Rgb8> storyPlot(const PickedStory& story, int side) {
                         .across = across,
                         .middle_x = (extent.low[across] + extent.high[across]) / 2.0,
                         .middle_y = (extent.low[0] + extent.high[0]) / 2.0,
-                        .scale = 0.8 * side / widest};
+                        .scale = (side - 4.0 * (markRadius(side) + 1)) / widest};
         view.rectangle(box.low, box.high);
         for (const Point& point : points) {
             view.draw(point);

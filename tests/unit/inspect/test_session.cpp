@@ -3,37 +3,12 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
-#include "demos/inspect/session.h"
-#include "demos/scenes/builtin.h"
-#include "engine/hash.h"
+#include "tests/unit/inspect/session_tools.h"
 
 using namespace still;
 using namespace still::inspect;
 
 namespace {
-
-constexpr int kWidth = 120, kHeight = 72;
-
-Scene sceneNamed(const std::string& name) {
-    return builtinScene(name).value();
-}
-
-Mode mode(const std::string& name) {
-    return modeNamed(name).value();
-}
-
-uint64_t hashOf(const Drawn& drawn) {
-    return hashPlane(drawn.image);
-}
-
-/// Draws until nothing changes any more.
-int drawToRest(Session& session, int limit) {
-    int draws = 0;
-    while (session.draw().changed && draws < limit) {
-        ++draws;
-    }
-    return draws;
-}
 
 /// What a frame loop makes of the recording's last frame.
 uint64_t renderedAgain(const Session& session, int pane, Workers& workers) {
@@ -49,10 +24,10 @@ uint64_t renderedAgain(const Session& session, int pane, Workers& workers) {
 TEST_CASE("session: a recording is rendered again with the same bytes", "[unit][session]") {
     for (const std::string scene : {"cubes", "glass", "pan"}) {
         Workers workers(2);
-        Session session(sceneNamed(scene), {.width = kWidth, .height = kHeight}, workers);
+        Session session(sceneNamed(scene), testSettings(), workers);
         session.look().split = true;
-        session.pane(0).mode = mode("still");
-        session.pane(1).mode = mode("variance");
+        session.pane(0).mode = modeCalled("still");
+        session.pane(1).mode = modeCalled("variance");
         session.play(true);
         for (int i = 0; i < 40; ++i) {
             switch (i) {
@@ -64,10 +39,10 @@ TEST_CASE("session: a recording is rendered again with the same bytes", "[unit][
                     break;
                 case 14:
                     session.steer().dolly(0.8);
-                    session.pane(1).mode = mode("raw");
+                    session.pane(1).mode = modeCalled("raw");
                     break;
                 case 20:
-                    session.pane(0).mode = mode("fast");
+                    session.pane(0).mode = modeCalled("fast");
                     session.step(1);
                     break;
                 case 26:
@@ -96,11 +71,11 @@ TEST_CASE("session: a recording is rendered again with the same bytes", "[unit][
 TEST_CASE("session: nothing changed, nothing done", "[unit][session]") {
     Workers workers(2);
     int clock = 0;
-    SessionSettings settings{.width = kWidth, .height = kHeight};
+    SessionSettings settings = testSettings();
     settings.clock_ms = [&] { return double(++clock); };
     Session session(sceneNamed("triangle"), settings, workers);
     session.look().split = true;
-    session.pane(1).mode = mode("ssaa:16");
+    session.pane(1).mode = modeCalled("ssaa:16");
     const int draws = drawToRest(session, 200);
     CHECK(draws >= 64);
     CHECK(draws < 200);
@@ -122,8 +97,8 @@ TEST_CASE("session: nothing changed, nothing done", "[unit][session]") {
 TEST_CASE("session: ssaa:N converges to the bytes of ssaa:N", "[unit][session]") {
     for (const int samples : {1, 7, 16}) {
         Workers workers(2);
-        Session session(sceneNamed("glass"), {.width = kWidth, .height = kHeight}, workers);
-        session.pane(0).mode = mode("ssaa:" + std::to_string(samples));
+        Session session(sceneNamed("glass"), testSettings(), workers);
+        session.pane(0).mode = modeCalled("ssaa:" + std::to_string(samples));
         int last = 0;
         while (!session.report(0).at_rest) {
             session.draw();
@@ -138,8 +113,8 @@ TEST_CASE("session: ssaa:N converges to the bytes of ssaa:N", "[unit][session]")
 TEST_CASE("session: a recursive method rests when a period has changed nothing",
           "[unit][session]") {
     Workers workers(2);
-    Session session(sceneNamed("triangle"), {.width = kWidth, .height = kHeight}, workers);
-    session.pane(0).mode = mode("basic");
+    Session session(sceneNamed("triangle"), testSettings(), workers);
+    session.pane(0).mode = modeCalled("basic");
     session.pane(0).mode.policy.jitter = JitterPattern::none;
     CHECK(drawToRest(session, 400) < 400);
     CHECK(session.report(0).at_rest);
