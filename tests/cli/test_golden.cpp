@@ -136,6 +136,64 @@ TEST_CASE("golden: finds a one-bit change made on purpose in one tile of one fra
     }
 }
 
+TEST_CASE("golden: the page's keys and buttons switch pictures in a real browser", "[cli]") {
+    const TempFolder folder;
+    if (shell(folder.path(), "command -v chromium").code != 0) {
+        WARN("no chromium here: the page of differences is not tested");
+        return;
+    }
+    writeWall(folder);
+    folder.write("golden.json", kManifest);
+    REQUIRE(shell(folder.path(), "stillframe golden record . --quiet").code == 0);
+    writeTexture(folder.path() / "late.png", true);
+    CHECK(shell(folder.path(), "stillframe golden verify .").code == 1);
+    std::string page = contentsOf(folder.path() / "out/report.html");
+    // Notes after each key what is seen: the name of the case and of its visible pictures.
+    page.insert(page.rfind("</body>"), R"html(<script>
+const notes = [];
+const note = label => notes.push(label + "=" + $("#name").textContent + ":" +
+  [...document.querySelectorAll("#picture img")].filter(image =>
+    image.style.visibility === "visible").map(
+    image => image.alt.split(" ")[0]).join("+"));
+const press = key => {
+  document.body.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
+  note(key);
+};
+onload = () => {
+  for (const key of ["e", " ", " ", "a", "d", "s", "j", "k", "k"]) press(key);
+  $("[data-mode=actual]").click();
+  note("click");
+  press("z");
+  notes.push("width=" + $("#picture").clientWidth);
+  notes.push("outlines=" + document.querySelectorAll("#picture div.first").length);
+  press("f");
+  setTimeout(() => { note("later"); setTimeout(() => {
+    note("still later");
+    notes.push("wide=" + [...document.querySelectorAll("img")].map(i => i.naturalWidth).join());
+    make("pre", document.body, notes.join(";")).id = "notes";
+  }, 500); }, 500);
+};
+</script>)html");
+    folder.write("page.html", page);
+    const Ran ran =
+        shell(folder.path(),
+              "timeout 60 chromium --headless --no-sandbox --disable-gpu --dump-dom "
+              "--user-data-dir=profile --virtual-time-budget=5000 page.html 2>/dev/null");
+    const size_t at = ran.out.find("<pre id=\"notes\">");
+    REQUIRE(at != std::string::npos);
+    const std::string notes = ran.out.substr(at, ran.out.find("</pre>", at) - at);
+    INFO(notes);
+    CHECK(has(notes,
+              ">e=wall:expected; =wall:actual; =wall:expected;a=wall:actual;d=wall:diff;"
+              "s=wall:expected+actual;j=wall-variance:expected+actual;"
+              "k=wall:expected+actual;k=wall-raw:expected+actual;click=wall-raw:actual;"
+              "z=wall-raw:actual;width=384;outlines=1;"));
+    CHECK(has(notes, ";wide=192,192,192"));
+    // Flickering shows the two in turns.
+    CHECK((has(notes, "later=wall-raw:expected;still later=wall-raw:actual") ||
+           has(notes, "later=wall-raw:actual;still later=wall-raw:expected")));
+}
+
 TEST_CASE("golden: verifying finds the same with any thread count and instruction set", "[cli]") {
     const TempFolder folder;
     writeWall(folder);
