@@ -28,11 +28,20 @@ std::string sizeText(int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
 }
 
+/// "frame 3", "frames 0 to 7" or "frames 0, 30, 59".
 std::string framesText(const std::vector<int>& frames) {
-    return frames.size() == 1
-               ? "frame " + std::to_string(frames[0])
-               : std::to_string(frames.size()) + " frames from " + std::to_string(frames.front()) +
-                     " to " + std::to_string(frames.back());
+    constexpr size_t kMost = 12;
+    std::string text = std::to_string(frames.front());
+    if (frames.size() == 1) {
+        return "frame " + text;
+    }
+    if (size_t(frames.back() - frames.front()) + 1 == frames.size()) {
+        return "frames " + text + " to " + std::to_string(frames.back());
+    }
+    for (size_t i = 1; i < std::min(frames.size(), kMost); ++i) {
+        text += ", " + std::to_string(frames[i]);
+    }
+    return "frames " + text + (frames.size() > kMost ? ", …" : "");
 }
 
 std::string shown(Rgb8 colour) {
@@ -66,8 +75,8 @@ Result<int> findView(const Scene& scene, const Case& golden_case) {
     if (golden_case.view.empty()) {
         return -1;
     }
-    return fail(golden_case.place + "/view: expected one of the scene's views " + known +
-                ", found " + shownText(golden_case.view));
+    return fail(golden_case.place + "/view: " + shownText(golden_case.view) + ": the scene has " +
+                (known.empty() ? "no views" : "the views " + known));
 }
 
 /// What a case needs to be rendered; `settings` points into it.
@@ -178,10 +187,7 @@ class Comparison {
     void add(const Record::Frame& actual, const FrameResult& result) {
         const Record::Frame& expected = record_.frames[size_t(verdict_.frames++)];
         auto stages = firstDifference(expected.stages, actual.stages);
-        if (!stages) {
-            return;
-        }
-        if (verdict_.differing++ > 0) {
+        if (!stages || verdict_.differing++ > 0) {
             return;
         }
         verdict_.finding = Finding::differs;
