@@ -11,6 +11,7 @@ namespace still {
 /// One decoded pixel as it stands in an image file.
 struct Rgba8 {
     uint8_t r = 0, g = 0, b = 0, a = 255;
+    friend bool operator==(const Rgba8&, const Rgba8&) = default;
 };
 
 /// Of the encoded values: Rec. 709 weights in 1/256, exact for greys.

@@ -18,6 +18,7 @@ struct Subcommand {
 
 // cli_render.cpp
 Subcommand declareRender(CLI::App& app);
+Subcommand declareInfo(CLI::App& app);
 // cli_compare.cpp
 Subcommand declareCompare(CLI::App& app);
 Subcommand declarePresets(CLI::App& app);
@@ -27,24 +28,50 @@ Subcommand declareChart(CLI::App& app);
 Subcommand declareBench(CLI::App& app);
 // cli_golden.cpp
 Subcommand declareGolden(CLI::App& app);
+// cli_completion.cpp
+Subcommand declareCompletion(CLI::App& app);
 
 constexpr int kMaxFrames = 1000000;
+
+/// An option whose text `parse` turns into an Outcome of what `target` takes.
+template <class Target, class Parse>
+CLI::Option* addParsed(CLI::App& command, const std::string& name, Target& target, Parse parse,
+                       const char* text) {
+    return command.add_option_function<std::string>(
+        name,
+        [&target, parse, name](const std::string& typed) {
+            const auto parsed = parse(typed);
+            if (!parsed) {
+                const std::string& message = parsed.error().message;
+                throw CLI::ValidationError(message.starts_with("--") ? message
+                                                                     : name + ": " + message);
+            }
+            target = *parsed;
+        },
+        text);
+}
+
+/// CLI::Range lets NaN pass.
+inline CLI::Validator between(double low, double high) {
+    const auto check = [low, high](std::string& text) {
+        double value = 0;
+        const bool fits = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return fits ? std::string()
+                    : text + ": expected a number from " + CLI::detail::to_string(low) + " to " +
+                          CLI::detail::to_string(high);
+    };
+    return CLI::Validator(check, "");
+}
 
 /// `size` is a Size, which keeps its default, or an optional one.
 template <class Target>
 void addSize(CLI::App& command, Target& size, const char* text) {
-    command
-        .add_option_function<std::string>(
-            "--resolution",
-            [&size](const std::string& typed) {
-                const auto parsed = parseResolution(typed);
-                if (!parsed) {
-                    throw CLI::ValidationError(parsed.error().message);
-                }
-                size = *parsed;
-            },
-            text)
-        ->type_name("WIDTHxHEIGHT");
+    addParsed(command, "--resolution", size, parseResolution, text)->type_name("WIDTHxHEIGHT");
+}
+
+/// What every command has that may print warnings or progress.
+inline void addQuiet(CLI::App& command, bool& quiet) {
+    command.add_flag("--quiet", quiet, "No warnings and no progress; errors are told all the same");
 }
 
 }  // namespace still::command

@@ -22,6 +22,7 @@ Subcommand declareCompare(CLI::App& app) {
     compare->add_flag("--json", o->json,
                       "Print psnr (null when identical), ssim, max_difference and\n"
                       "identical as one JSON object");
+    compare->add_flag("--quiet", o->quiet, "Print nothing, tell by the exit code");
     return {compare,
             [o](Interruption& interruption) { return still::command::compare(*o, interruption); }};
 }

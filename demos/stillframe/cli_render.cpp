@@ -13,9 +13,17 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
     render
         .add_option("-o,--output", o.output,
                     "NAME.png; several frames become NAME.0000.png and so on, or\n"
-                    "put {frame}, {frame:4} or %04d where the number goes.\n"
-                    "NAME.gif, NAME.mp4 (needs the ffmpeg program).\n"
-                    "- writes a PNG to standard output")
+                    "put {frame}, {frame:4} or %04d where the number goes, and\n"
+                    "{model} for the scene's name. All frames in one file:\n"
+                    "NAME.apng (exact colours), NAME.gif, NAME.y4m, and NAME.mp4\n"
+                    "(needs the ffmpeg program). - is standard output: a PNG,\n"
+                    "or Y4M of several frames")
+        ->type_name("NAME");
+    render
+        .add_option("--reference", o.reference,
+                    "Compare with this PNG, or pattern of several as of --output.\n"
+                    "The output is kept only where it differs, with NAME.diff.png\n"
+                    "beside it, and the exit code is then 1")
         ->type_name("NAME");
     addSize(render, o.resolution, "Also WIDTH,HEIGHT; default 1280x720, or the camera file's");
     render
@@ -37,6 +45,16 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
         ->check(CLI::IsMember({"none", "reinhard"}))
         ->type_name("NAME");
     render
+        .add_option("--exposure", o.exposure_stops,
+                    "Doubles light so many times before the tone map; default 0")
+        ->check(between(-16.0, 16.0))
+        ->type_name("STOPS");
+    addParsed(render, "--background-color", o.background, parseColour,
+              "R,G,B from 0 to 1, or #rrggbb; sRGB")
+        ->type_name("COLOR");
+    render.add_flag("--no-background", o.no_background,
+                    "Alpha instead, in PNG and APNG; takes twice the time");
+    render
         .add_option("--dump", o.dump,
                     "Also write planes as NAME.PLANE.png: color, depth, normal,\n"
                     "motion, id, confidence (several with commas)")
@@ -44,7 +62,9 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
 }
 
 void addTimeOptions(CLI::App& render, RenderOptions& o) {
-    render.add_option("--frames", o.frames, "How many; default 1, or the camera file's")
+    render
+        .add_option("--frames", o.frames,
+                    "How many; default 1, 60 of a turntable, or the camera file's")
         ->check(CLI::Range(1, kMaxFrames))
         ->type_name("N");
     render
@@ -53,7 +73,7 @@ void addTimeOptions(CLI::App& render, RenderOptions& o) {
                     "same bytes as among all others")
         ->check(CLI::Range(0, kMaxFrames))
         ->type_name("K");
-    render.add_option("--fps", o.fps, "Speed of GIF and MP4, default 30")
+    render.add_option("--fps", o.fps, "Speed of APNG, GIF, MP4 and Y4M, default 30")
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
     render.add_option("--cameras", o.cameras, "JSON with a view and a projection for each frame")
@@ -62,13 +82,45 @@ void addTimeOptions(CLI::App& render, RenderOptions& o) {
     render
         .add_option("--orbit", o.orbit_deg,
                     "The camera circles its target by so much over the frames")
-        ->check(CLI::Range(-36000.0, 36000.0))
+        ->check(between(-36000.0, 36000.0))
         ->type_name("DEGREES");
     render
         .add_option("--orbit-frames", o.orbit_frames,
                     "The frames that the orbit takes, default --frames; for parts of a run")
         ->check(CLI::Range(1, kMaxFrames))
         ->type_name("N");
+    render.add_flag("--turntable", o.turntable, "An orbit of 360 degrees");
+}
+
+void addCameraOptions(CLI::App& render, CameraOptions& o) {
+    const auto point = [&](const char* name, std::optional<glm::dvec3>& target, const char* text) {
+        addParsed(render, name, target, parsePoint, text)->type_name("X,Y,Z");
+    };
+    const auto degrees = [&](const char* name, double& target, const char* text) {
+        render.add_option(name, target, text)
+            ->check(between(-36000.0, 36000.0))
+            ->type_name("DEGREES");
+    };
+    addParsed(render, "--up", o.up, parseDirection,
+              "Which way is up in the scene: +Z, -X … or X,Y,Z; default +Y.\n"
+              "Automatic camera and light follow")
+        ->type_name("AXIS");
+    point("--camera-position", o.position, "Where the eye stands");
+    point("--camera-focal-point", o.focal_point, "What it looks at");
+    addParsed(render, "--camera-view-up", o.view_up, parseDirection,
+              "What is up in the picture, as --up, for the camera alone")
+        ->type_name("AXIS");
+    render.add_option("--camera-view-angle", o.view_angle_deg, "From bottom to top")
+        ->check(between(0.1, 170.0))
+        ->type_name("DEGREES");
+    degrees("--camera-azimuth-angle", o.azimuth_deg, "The eye goes around to the right by so much");
+    degrees("--camera-elevation-angle", o.elevation_deg, "and then up");
+    render
+        .add_option("--camera-zoom-factor", o.zoom, "So many times as large, by a narrower angle")
+        ->check(between(0.01, 1000.0))
+        ->type_name("N");
+    render.add_flag("--camera-orthographic", o.orthographic,
+                    "Parallel projection, the focal point as large as before");
 }
 
 void addMachineOptions(CLI::App& render, RenderOptions& o) {
@@ -86,7 +138,11 @@ void addMachineOptions(CLI::App& render, RenderOptions& o) {
                     "Read OBJ files anew, where otherwise large ones are kept ready in\n"
                     "$XDG_CACHE_HOME/stillframe or ~/.cache/stillframe (at most 2 GB)");
     render.add_flag("--hash", o.hash, "Print 64-bit hashes of all planes of each frame");
-    render.add_flag("--json", o.json, "Print times, memory and hashes as one JSON object");
+    render.add_flag("--json", o.json,
+                    "Print times, memory, hashes and comparisons as one JSON object");
+    addQuiet(render, o.quiet);
+    render.add_flag("--watch", o.watch,
+                    "Render again when a file of the scene changes, until Ctrl-C");
 }
 
 }  // namespace
@@ -95,16 +151,18 @@ Subcommand declareRender(CLI::App& app) {
     const auto o = std::make_shared<RenderOptions>();
     CLI::App* render = app.add_subcommand("render", "Render frames of a scene");
     render
-        ->add_option("SCENE", o->scene, "FILE.obj, FILE.json or builtin:NAME, as builtin:courtyard")
+        ->add_option("SCENE", o->scenes,
+                     "FILE.obj, FILE.json, builtin:NAME, as builtin:courtyard, or - for\n"
+                     "standard input; several with {model} in --output")
         ->required()
         ->type_name("");
     addPictureOptions(*render, *o);
     addTimeOptions(*render, *o);
+    addCameraOptions(*render, o->camera);
     addMachineOptions(*render, *o);
     render->footer("Settings of --taa:\n" + taaSettingsLines());
-    return {render, [o](Interruption& interruption) {
-                return still::command::render(*o, interruption).map([] { return ExitCode::ok; });
-            }};
+    return {render,
+            [o](Interruption& interruption) { return still::command::render(*o, interruption); }};
 }
 
 }  // namespace still::command

@@ -122,9 +122,11 @@ Outcome<ExitCode> compare(const CompareOptions& options, Interruption& interrupt
         }
     }
     const CompareReport& report = comparison.report();
-    return print(options.json ? compareJson(report) : compareLines(report)).map([&] {
-        return report.error().identical() ? ExitCode::ok : ExitCode::differs;
-    });
+    const Outcome<void> printed =
+        options.json ? print(compareJson(report))
+                     : (options.quiet ? Outcome<void>() : print(compareLines(report)));
+    return printed.map(
+        [&] { return report.error().identical() ? ExitCode::ok : ExitCode::differs; });
 }
 
 }  // namespace still::command

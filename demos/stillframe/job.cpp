@@ -1,7 +1,8 @@
 #include "demos/stillframe/job.h"
 
 #include <algorithm>
-#include <cmath>
+#include <initializer_list>
+#include <set>
 #include <thread>
 
 #include "demos/stillframe/file_cache.h"
@@ -18,34 +19,91 @@ Outcome<void> store(Outcome<T> from, T& to) {
     return std::move(from).map([&](T value) { to = std::move(value); });
 }
 
-/// Options that exclude or need each other.
-Outcome<void> checkCombination(const Job& job) {
+/// The first of the rules that is broken.
+struct Rule {
+    bool broken;
+    const char* message;
+};
+Outcome<void> checkRules(std::initializer_list<Rule> rules) {
+    for (const Rule& rule : rules) {
+        if (rule.broken) {
+            return usageError(rule.message);
+        }
+    }
+    return {};
+}
+
+/// Where results go.
+Outcome<void> checkOutputs(const Job& job) {
     const RenderOptions& options = job.options;
     const bool to_stdout = job.sink == SinkKind::standard_output;
-    if (job.sink == SinkKind::none && !options.hash && !options.json) {
-        return usageError("render: expected --output, --hash or --json");
-    }
-    if (to_stdout && (options.hash || options.json)) {
-        return usageError(
-            "--output -: the picture takes standard output, so neither --hash nor "
-            "--json can have it");
-    }
-    if (!job.dump.empty() && (to_stdout || job.sink == SinkKind::none)) {
-        return usageError("--dump: expected an --output file, whose name the planes' names follow");
-    }
+    const bool to_file = job.sink != SinkKind::none && !to_stdout;
+    const bool compares = !options.reference.empty();
+    return checkRules({
+        {job.sink == SinkKind::none && !options.hash && !options.json && !compares,
+         "render: expected --output, --hash, --json or --reference"},
+        {to_stdout && (options.hash || options.json),
+         "--output -: the picture takes standard output, so neither --hash nor --json can have it"},
+        {!job.dump.empty() && !to_file,
+         "--dump: expected an --output file, whose name the planes' names follow"},
+        {compares && job.sink != SinkKind::none && job.sink != SinkKind::png,
+         "--reference: is for pictures, expected an --output NAME.png or none"},
+        {options.no_background && !keepsAlpha(job.sink),
+         "--no-background: expected --output NAME.png, NAME.apng or -, which can keep alpha"},
+        {options.no_background && (options.hash || compares),
+         "--no-background: excludes --hash and --reference, which know of no alpha"},
+        {options.no_background && options.background.has_value(),
+         "--no-background: excludes --background-color"},
+        {options.watch && to_stdout, "--watch: expected an --output file"},
+    });
+}
+
+/// Where one looks from, and how pixels are made.
+Outcome<void> checkViews(const Job& job) {
+    const RenderOptions& options = job.options;
     const bool temporal = job.settings.anti_aliasing == AntiAliasing::taa;
-    if (!temporal && !options.taa.empty()) {
-        return usageError("--taa: is for --anti-aliasing taa");
+    const bool circles = options.orbit_deg != 0 || options.turntable;
+    return checkRules({
+        {!temporal && !options.taa.empty(), "--taa: is for --anti-aliasing taa"},
+        {!temporal && std::count(job.dump.begin(), job.dump.end(), DumpPlane::confidence) > 0,
+         "--dump: confidence exists with --anti-aliasing taa only"},
+        {options.turntable && options.orbit_deg != 0,
+         "--turntable: is an --orbit of 360 degrees, so it excludes another one"},
+        {!options.cameras.empty() && (!options.view.empty() || circles),
+         "--cameras: excludes --view, --orbit and --turntable"},
+        {!options.cameras.empty() && (options.camera.any() || options.camera.up),
+         "--cameras: excludes --up and the --camera options"},
+    });
+}
+
+/// Scenes that are given together.
+Outcome<void> checkScenes(const RenderOptions& options, SinkKind sink) {
+    const auto& scenes = options.scenes;
+    const auto stdins = std::count(scenes.begin(), scenes.end(), "-");
+    const auto files = std::count_if(scenes.begin(), scenes.end(), [](const std::string& name) {
+        return name != "-" && !name.starts_with("builtin:");
+    });
+    const auto checked = checkRules({
+        {stdins > 1, "SCENE: standard input can be read only once"},
+        {scenes.size() > 1 && sink == SinkKind::standard_output,
+         "--output -: takes the pictures of one scene only"},
+        {options.watch && files != std::ptrdiff_t(scenes.size()),
+         "--watch: expected scenes that are files"},
+    });
+    if (!checked || scenes.size() < 2 || sink == SinkKind::none) {
+        return checked;
     }
-    const bool confidence = std::count(job.dump.begin(), job.dump.end(), DumpPlane::confidence) > 0;
-    if (confidence && !temporal) {
-        return usageError("--dump: confidence exists with --anti-aliasing taa only");
-    }
-    if (!std::isfinite(options.orbit_deg)) {
-        return usageError("--orbit: expected a finite number of degrees");
-    }
-    if (!options.cameras.empty() && (!options.view.empty() || options.orbit_deg != 0)) {
-        return usageError("--cameras: excludes --view and --orbit");
+    std::set<std::string> outputs;
+    for (const std::string& name : scenes) {
+        const auto pattern = NamePattern::parse(options.output);
+        if (!pattern) {
+            return tl::make_unexpected(pattern.error());
+        }
+        const std::string output = pattern->withModel(modelName(name)).at(0).string();
+        if (!outputs.insert(output).second) {
+            return usageError("--output: " + options.output + ": several scenes would become " +
+                              output + ", expected {model} in it and scenes of different names");
+        }
     }
     return {};
 }
@@ -56,6 +114,11 @@ Outcome<void> settleOptions(Job& job) {
     FrameSettings& settings = job.settings;
     settings.shading = options.shading == "forward" ? Shading::forward : Shading::deferred;
     settings.tone_map = options.tone_map == "reinhard" ? ToneMap::reinhard : ToneMap::none;
+    settings.exposure = exposureFactor(options.exposure_stops);
+    settings.background = options.background;
+    if (options.no_background) {
+        settings.background = {0.0f, 0.0f, 0.0f};
+    }
     const int cores = std::max(1, int(std::thread::hardware_concurrency()));
     job.threads = options.threads > 0 ? options.threads : cores;
     AntiAliasingChoice choice;
@@ -70,7 +133,8 @@ Outcome<void> settleOptions(Job& job) {
             settings.policy = policy;
             job.preset = choice.preset;
         })
-        .and_then([&] { return checkCombination(job); });
+        .and_then([&] { return checkOutputs(job); })
+        .and_then([&] { return checkViews(job); });
 }
 
 Outcome<void> readCameras(Job& job) {
@@ -78,15 +142,21 @@ Outcome<void> readCameras(Job& job) {
         return {};
     }
     return store(fromResult(loadCameraFile(job.options.cameras)), job.cameras).map([&] {
-        printWarnings(job.cameras.warnings);
+        if (!job.options.quiet) {
+            printWarnings(job.cameras.warnings);
+        }
         job.settings.camera.file = &job.cameras;
     });
 }
 
 Outcome<void> readFiles(Job& job) {
     const auto cache = job.options.no_cache ? std::filesystem::path() : usersCacheFolder();
-    return store(openScene(job.options.scene, cache), job.scene)
-        .map([&] { printWarnings(job.scene.warnings); })
+    return store(openScene(job.scene_name, cache), job.scene)
+        .map([&] {
+            if (!job.options.quiet) {
+                printWarnings(job.scene.warnings);
+            }
+        })
         .and_then([&] { return readCameras(job); });
 }
 
@@ -105,15 +175,11 @@ Outcome<int> findView(const Scene& scene, const std::string& name) {
                       (known.empty() ? "no views" : "the views " + known));
 }
 
-/// Size, number of frames and camera: typed ones before those of the camera file.
-Outcome<void> settleView(Job& job) {
+/// Size and number of frames: typed ones before those of the camera file.
+void settleSize(Job& job) {
+    constexpr int kTurntableFrames = 60;
     const RenderOptions& options = job.options;
     FrameSettings& settings = job.settings;
-    const Outcome<void> view = store(findView(job.scene, options.view), settings.camera.view);
-    if (!view) {
-        return view;
-    }
-    settings.camera.orbit_deg = options.orbit_deg;
     if (const CameraFile* file = cameraFileOf(job.scene, settings.camera)) {
         settings.width = file->width;
         settings.height = file->height;
@@ -123,10 +189,29 @@ Outcome<void> settleView(Job& job) {
     settings.width = size.width;
     settings.height = size.height;
     job.start = options.start.value_or(0);
-    job.frames = options.frames.value_or(job.frames);
-    frameForAspect(job.scene, size.width, size.height);
+    job.frames = options.frames.value_or(options.turntable ? kTurntableFrames : job.frames);
     settings.camera.orbit_frames = options.orbit_frames.value_or(job.frames);
-    return {};
+}
+
+Outcome<void> settleView(Job& job) {
+    const RenderOptions& options = job.options;
+    FrameSettings& settings = job.settings;
+    const Outcome<void> view = store(findView(job.scene, options.view), settings.camera.view);
+    if (!view) {
+        return view;
+    }
+    settings.camera.orbit_deg = options.turntable ? 360 : options.orbit_deg;
+    settleSize(job);
+    if (options.camera.up) {
+        setUpAxis(job.scene, *options.camera.up);
+    }
+    if (!options.camera.any()) {
+        frameForAspect(job.scene, settings.width, settings.height);
+        return {};
+    }
+    const int from = settings.camera.view;
+    settings.camera.view = -1;
+    return applyCamera(options.camera, from, settings.width, settings.height, job.scene);
 }
 
 /// A single picture of something that stands still is finished before it is handed out, unless it
@@ -154,27 +239,54 @@ void settlePlanes(Job& job) {
     }
 }
 
+/// The pattern with the model's name, and with a number when there are several frames.
+Outcome<NamePattern> patternFor(const Job& job, const std::string& text) {
+    return NamePattern::parse(text).map([&](const NamePattern& pattern) {
+        const NamePattern named = pattern.withModel(modelName(job.scene_name));
+        return job.frames > 1 ? named.withNumber() : named;
+    });
+}
+
 Outcome<void> settleOutput(Job& job) {
+    const RenderOptions& options = job.options;
+    if (!options.reference.empty()) {
+        auto pattern = patternFor(job, options.reference);
+        if (!pattern) {
+            return tl::make_unexpected(pattern.error());
+        }
+        job.reference = *pattern;
+    }
     if (job.sink == SinkKind::none) {
         return {};
     }
     if (job.sink == SinkKind::standard_output) {
-        return job.frames == 1 ? Outcome<void>() : usageError("--output -: takes one frame only");
+        return job.frames == 1 || !options.no_background
+                   ? Outcome<void>()
+                   : usageError(
+                         "--no-background: several frames on standard output are Y4M, which "
+                         "has no alpha; expected --output NAME.apng");
     }
-    if (auto stored = store(NamePattern::parse(job.options.output), job.name); !stored) {
-        return stored;
+    if (job.sink == SinkKind::png) {
+        return store(patternFor(job, options.output), job.name);
     }
-    if (job.sink != SinkKind::png && job.name.numbered()) {
-        return usageError("--output: " + job.options.output +
+    const auto pattern = NamePattern::parse(options.output);
+    if (!pattern) {
+        return tl::make_unexpected(pattern.error());
+    }
+    if (pattern->numbered()) {
+        return usageError("--output: " + options.output +
                           ": all frames go into one file, so its name takes no number");
     }
-    if (job.sink == SinkKind::png && job.frames > 1) {
-        job.name = job.name.withNumber();
-    }
+    job.name = pattern->withModel(modelName(job.scene_name));
     return {};
 }
 
 }  // namespace
+
+Outcome<void> checkOptions(const RenderOptions& options) {
+    Job job(options, {});
+    return settleOptions(job).and_then([&] { return checkScenes(options, job.sink); });
+}
 
 Outcome<void> prepare(Job& job) {
     return settleOptions(job)

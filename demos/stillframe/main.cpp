@@ -1,11 +1,11 @@
 // The command line: finds the subcommand and gives its options to the function that does the work.
 
 #include <algorithm>
-#include <cstdio>
 #include <new>
 #include <vector>
 
 #include "demos/stillframe/cli.h"
+#include "demos/stillframe/report.h"
 
 namespace still::command {
 namespace {
@@ -13,12 +13,8 @@ namespace {
 constexpr const char* kExitCodes =
     "Exit codes: 0 ok, 1 images differ or a check failed, 2 usage, 3 cannot read or write.";
 
-/// One line, whatever the file's name is made of.
 int report(const Failure& failure) {
-    std::string line = failure.message;
-    std::replace_if(
-        line.begin(), line.end(), [](unsigned char c) { return c < 32; }, '?');
-    std::fprintf(stderr, "stillframe: %s\n", line.c_str());
+    printFailure(failure);
     return int(failure.code);
 }
 

@@ -79,6 +79,21 @@ Outcome<NamePattern> NamePattern::parse(const std::string& text) {
     return pattern;
 }
 
+NamePattern NamePattern::withModel(const std::string& model) const {
+    constexpr std::string_view kPlace = "{model}";
+    const auto filled = [&](std::string text) {
+        for (size_t at = 0; (at = text.find(kPlace, at)) != std::string::npos; at += model.size()) {
+            text.replace(at, kPlace.size(), model);
+        }
+        return text;
+    };
+    NamePattern pattern = *this;
+    pattern.folder_ = filled(folder_.string());
+    pattern.before_ = filled(before_);
+    pattern.after_ = filled(after_);
+    return pattern;
+}
+
 NamePattern NamePattern::withNumber() const {
     if (numbered_) {
         return *this;

@@ -1,6 +1,6 @@
 #pragma once
 // File names with a place for the frame number: shot.{frame}.png, shot.{frame:4}.png,
-// shot.%04d.png.
+// shot.%04d.png; and places for the name of the model: {model}.png.
 
 #include <filesystem>
 #include <optional>
@@ -18,6 +18,9 @@ class NamePattern {
     static Outcome<NamePattern> parse(const std::string& text);
 
     bool numbered() const { return numbered_; }
+    /// The same with `model` in every place of {model}, also in the folder. A name that holds
+    /// places itself keeps them as they are.
+    NamePattern withModel(const std::string& model) const;
     /// The same with ".{frame:4}" before the extension, unless it has a place already.
     NamePattern withNumber() const;
     /// The name for `frame`; without a place it is always the same.

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
+
+#include "engine/det_math.h"
 
 namespace still::command {
 namespace {
@@ -70,6 +73,11 @@ Outcome<AntiAliasingChoice> parseAntiAliasing(const std::string& text) {
 
 Outcome<TaaPolicy> parseTaaSettings(const std::string& text, TaaPolicy policy) {
     return ofOption("--taa", still::parseTaaSettings(text, policy));
+}
+
+double exposureFactor(double stops) {
+    const double whole = std::floor(stops);
+    return std::ldexp(det::pow(2, stops - whole), int(whole));
 }
 
 std::string dumpName(DumpPlane plane) {

@@ -29,21 +29,23 @@ void onError(png_structp png, png_const_charp message) {
 void onWarning(png_structp, png_const_charp) {}
 
 /// Everything that may jump. Only trivial objects live here, so a jump skips no destructor.
-bool encode(png_structp png, png_infop info, std::FILE* stream, ImageView<const Rgb8> image) {
+bool encode(png_structp png, png_infop info, std::FILE* stream, const Picture& image) {
     if (setjmp(png_jmpbuf(png)) != 0) {
         return false;
     }
     png_init_io(png, stream);
-    png_set_user_limits(png, png_uint_32(image.width), png_uint_32(image.height));
+    png_set_user_limits(png, png_uint_32(image.width()), png_uint_32(image.height()));
     png_set_compression_level(png, kCompressionLevel);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
-    png_set_IHDR(png, info, png_uint_32(image.width), png_uint_32(image.height), 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, png_uint_32(image.width()), png_uint_32(image.height()), 8,
+                 image.hasAlpha() ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
-    for (int y = 0; y < image.height; ++y) {
-        png_write_row(png, reinterpret_cast<png_const_bytep>(image.row(y)));
+    for (int y = 0; y < image.height(); ++y) {
+        png_write_row(png, image.hasAlpha()
+                               ? reinterpret_cast<png_const_bytep>(image.matted.row(y))
+                               : reinterpret_cast<png_const_bytep>(image.opaque.row(y)));
     }
     png_write_end(png, info);
     return true;
@@ -51,7 +53,7 @@ bool encode(png_structp png, png_infop info, std::FILE* stream, ImageView<const 
 
 }  // namespace
 
-Outcome<void> writePng(std::FILE* stream, const std::string& name, ImageView<const Rgb8> image) {
+Outcome<void> writePng(std::FILE* stream, const std::string& name, const Picture& image) {
     errno = 0;
     PngError error;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error, onError, onWarning);
@@ -68,7 +70,7 @@ Outcome<void> writePng(std::FILE* stream, const std::string& name, ImageView<con
     return {};
 }
 
-Outcome<std::string> pngBytes(ImageView<const Rgb8> image) {
+Outcome<std::string> pngBytes(const Picture& image) {
     char* memory = nullptr;
     size_t size = 0;
     std::FILE* stream = open_memstream(&memory, &size);
@@ -81,7 +83,7 @@ Outcome<std::string> pngBytes(ImageView<const Rgb8> image) {
     return written.map([&] { return std::string(memory, size); });
 }
 
-Outcome<void> savePng(const std::filesystem::path& path, ImageView<const Rgb8> image,
+Outcome<void> savePng(const std::filesystem::path& path, const Picture& image,
                       Interruption& interruption) {
     return OutputFile::create(path, interruption).and_then([&](OutputFile file) -> Outcome<void> {
         if (auto written = writePng(file.stream(), path.string(), image); !written) {

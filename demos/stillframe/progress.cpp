@@ -8,7 +8,8 @@
 
 namespace still::command {
 
-ProgressBar::ProgressBar(int total) : total_(total), terminal_(isatty(STDERR_FILENO) == 1) {
+ProgressBar::ProgressBar(int total, bool quiet)
+    : total_(total), terminal_(!quiet && isatty(STDERR_FILENO) == 1) {
     show(0);
 }
 

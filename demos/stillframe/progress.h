@@ -1,11 +1,11 @@
 #pragma once
-// A line on standard error that fills up, when that is a terminal.
+// A line on standard error that fills up, when that is a terminal and quiet is not asked for.
 
 namespace still::command {
 
 class ProgressBar {
   public:
-    explicit ProgressBar(int total);
+    explicit ProgressBar(int total, bool quiet = false);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;

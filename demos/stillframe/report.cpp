@@ -73,9 +73,23 @@ std::string errorLine(const PixelError& error, double ssim) {
                      error.max_difference);
 }
 
-}  // namespace
+Json jsonOf(const CompareReport& report) {
+    Json json = errorJson(report.error(), report.ssim());
+    if (report.numbered) {
+        json["frames"] = Json::array();
+        for (const CompareReport::Frame& frame : report.frames) {
+            Json entry{{"frame", frame.frame}};
+            entry.update(errorJson(frame.error, frame.ssim));
+            json["frames"].push_back(entry);
+        }
+    }
+    if (report.with_differences) {
+        json["first_differences"] = differencesJson(report.differences);
+    }
+    return json;
+}
 
-std::string renderJson(const RenderReport& report) {
+Json jsonOf(const RenderReport& report) {
     const auto& frames = report.frames;
     Json json;
     json["scene"] = report.scene;
@@ -103,18 +117,53 @@ std::string renderJson(const RenderReport& report) {
             json["hashes"].push_back(hashJson(frame));
         }
     }
+    if (report.reference) {
+        json["reference"] = jsonOf(*report.reference);
+    }
+    return json;
+}
+
+/// Texts of the reports, with a heading each when there are several.
+template <class Lines>
+std::string underHeadings(const std::vector<RenderReport>& reports, Lines&& linesOf) {
+    std::string all;
+    for (const RenderReport& report : reports) {
+        all += reports.size() > 1 ? "scene " + report.scene + "\n" : "";
+        all += linesOf(report);
+    }
+    return all;
+}
+
+}  // namespace
+
+std::string renderJson(const std::vector<RenderReport>& reports) {
+    if (reports.size() == 1) {
+        return text(jsonOf(reports[0]));
+    }
+    Json json;
+    json["results"] = Json::array();
+    for (const RenderReport& report : reports) {
+        json["results"].push_back(jsonOf(report));
+    }
     return text(json);
 }
 
-std::string hashLines(const RenderReport& report) {
-    std::string lines;
-    for (const RenderReport::Frame& frame : report.frames) {
-        const FrameHashes& h = frame.hashes;
-        lines += "frame " + std::to_string(frame.frame) + " output " + hex(h.output) + " color " +
-                 hex(h.color) + " depth " + hex(h.depth) + " normal " + hex(h.normal) + " motion " +
-                 hex(h.motion) + " id " + hex(h.id) + "\n";
-    }
-    return lines;
+std::string hashLines(const std::vector<RenderReport>& reports) {
+    return underHeadings(reports, [](const RenderReport& report) {
+        std::string lines;
+        for (const RenderReport::Frame& frame : report.frames) {
+            const FrameHashes& h = frame.hashes;
+            lines += "frame " + std::to_string(frame.frame) + " output " + hex(h.output) +
+                     " color " + hex(h.color) + " depth " + hex(h.depth) + " normal " +
+                     hex(h.normal) + " motion " + hex(h.motion) + " id " + hex(h.id) + "\n";
+        }
+        return lines;
+    });
+}
+
+std::string referenceLines(const std::vector<RenderReport>& reports) {
+    return underHeadings(
+        reports, [](const RenderReport& report) { return compareLines(*report.reference); });
 }
 
 PixelError CompareReport::error() const {
@@ -134,19 +183,7 @@ double CompareReport::ssim() const {
 }
 
 std::string compareJson(const CompareReport& report) {
-    Json json = errorJson(report.error(), report.ssim());
-    if (report.numbered) {
-        json["frames"] = Json::array();
-        for (const CompareReport::Frame& frame : report.frames) {
-            Json entry{{"frame", frame.frame}};
-            entry.update(errorJson(frame.error, frame.ssim));
-            json["frames"].push_back(entry);
-        }
-    }
-    if (report.with_differences) {
-        json["first_differences"] = differencesJson(report.differences);
-    }
-    return text(json);
+    return text(jsonOf(report));
 }
 
 std::string compareLines(const CompareReport& report) {
@@ -200,6 +237,13 @@ std::string taaSettingsLines() {
         lines += entryLine(name, values);
     }
     return lines;
+}
+
+void printFailure(const Failure& failure) {
+    std::string line = failure.message;
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < 32; }, '?');
+    std::fprintf(stderr, "stillframe: %s\n", line.c_str());
 }
 
 Outcome<void> print(const std::string& text) {

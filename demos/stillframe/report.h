@@ -13,29 +13,6 @@
 
 namespace still::command {
 
-struct RenderReport {
-    std::string scene;
-    uint64_t triangles = 0;
-    int width = 0, height = 0;
-    int threads = 1;
-    SimdTarget simd = SimdTarget::scalar;
-    std::string anti_aliasing;  ///< as typed
-    std::string preset;         ///< of TAA; empty without
-    std::string taa;            ///< settings over the preset's, as typed
-    struct Frame {
-        int frame = 0;
-        StageTimes times;
-        double total_ms = 0;  ///< wall time, replayed frames (--start) included
-        FrameHashes hashes;
-    };
-    std::vector<Frame> frames;
-    bool with_hashes = false;
-};
-
-std::string renderJson(const RenderReport& report);
-/// One line a frame.
-std::string hashLines(const RenderReport& report);
-
 /// A pixel that is not the same in both pictures.
 struct Difference {
     int frame = 0, x = 0, y = 0;
@@ -57,6 +34,33 @@ struct CompareReport {
     double ssim() const;       ///< mean over the frames
 };
 
+struct RenderReport {
+    std::string scene;
+    uint64_t triangles = 0;
+    int width = 0, height = 0;
+    int threads = 1;
+    SimdTarget simd = SimdTarget::scalar;
+    std::string anti_aliasing;  ///< as typed
+    std::string preset;         ///< of TAA; empty without
+    std::string taa;            ///< settings over the preset's, as typed
+    struct Frame {
+        int frame = 0;
+        StageTimes times;
+        double total_ms = 0;  ///< wall time, replayed frames (--start) included
+        FrameHashes hashes;
+    };
+    std::vector<Frame> frames;
+    bool with_hashes = false;
+    std::optional<CompareReport> reference;  ///< --reference
+};
+
+/// An object; {"results": [object…]} of several.
+std::string renderJson(const std::vector<RenderReport>& reports);
+/// One line a frame; with several reports, "scene NAME" before each one's.
+std::string hashLines(const std::vector<RenderReport>& reports);
+/// How the frames compare with the reference, in the form of compareLines().
+std::string referenceLines(const std::vector<RenderReport>& reports);
+
 std::string compareJson(const CompareReport& report);
 std::string compareLines(const CompareReport& report);
 
@@ -65,6 +69,9 @@ std::string presetsJson();
 std::string presetsLines();
 /// The settings of --taa with their values, one a line, indented; long lists are wrapped.
 std::string taaSettingsLines();
+
+/// The failure's line on standard error, whatever a file's name in it is made of.
+void printFailure(const Failure& failure);
 
 /// Writes `text` to standard output, with an error when that fails.
 Outcome<void> print(const std::string& text);

@@ -1,9 +1,11 @@
 #include "demos/stillframe/scene_source.h"
 
+#include <array>
 #include <cstdio>
 #include <string_view>
 
 #include "demos/scenes/builtin.h"
+#include "demos/stillframe/output_file.h"
 #include "engine/load.h"
 
 #if defined(__GLIBC__)
@@ -12,8 +14,37 @@
 
 namespace still::command {
 
+namespace {
+
+constexpr std::string_view kBuiltin = "builtin:";
+constexpr const char* kStandardInput = "standard input";
+
+Outcome<Scene> sceneFromStandardInput() {
+    std::string text;
+    std::array<char, 65536> buffer;
+    while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), stdin)) {
+        text.append(buffer.data(), count);
+    }
+    if (std::ferror(stdin) != 0) {
+        return fileError(systemMessage(kStandardInput, "cannot read"));
+    }
+    return fromResult(loadSceneText(std::move(text), kStandardInput));
+}
+
+}  // namespace
+
+std::string modelName(const std::string& scene) {
+    if (scene == "-") {
+        return "stdin";
+    }
+    return scene.starts_with(kBuiltin) ? scene.substr(kBuiltin.size())
+                                       : std::filesystem::path(scene).stem().string();
+}
+
 Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder) {
-    constexpr std::string_view kBuiltin = "builtin:";
+    if (name == "-") {
+        return sceneFromStandardInput();
+    }
     if (!name.starts_with(kBuiltin)) {
         Outcome<Scene> scene = fromResult(loadScene(name, cache_folder));
 #if defined(__GLIBC__)

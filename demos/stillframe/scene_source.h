@@ -10,9 +10,13 @@
 
 namespace still::command {
 
-/// Opens FILE.obj, FILE.json or builtin:NAME, with the help of a `cache_folder` if one is given
-/// (see loadScene). Its warnings are the caller's to print.
+/// Opens FILE.obj, FILE.json, builtin:NAME or -, which is standard input with the text of either,
+/// with the help of a `cache_folder` if one is given (see loadScene). Its warnings are the caller's
+/// to print.
 Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder = {});
+
+/// What {model} stands for: "courtyard" of builtin:courtyard, "a" of dir/a.obj, "stdin" of -.
+std::string modelName(const std::string& scene);
 
 /// Each on a line of standard error.
 void printWarnings(const std::vector<std::string>& warnings);
