@@ -202,6 +202,45 @@ TEST_CASE("golden: verifying finds the same with any thread count and instructio
     CHECK(shell(folder.path(), "stillframe golden verify . --threads 3 --simd scalar").code == 0);
 }
 
+TEST_CASE("golden: a case is what render makes with the same settings", "[cli]") {
+    const TempFolder folder;
+    folder.write("cameras.json", R"({"width": 8, "height": 8, "frames": [
+        {"view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,-5,1],
+         "proj": [1,0,0,0, 0,1,0,0, 0,0,-1.02,-1, 0,0,-0.2,0]}]})");
+    folder.write("scene.json", R"({"objects": [{"shape": "torus"}],
+        "views": [{"name": "side", "eye": [9, 1, 0], "target": [0, 0, 0]}]})");
+    const struct {
+        std::string scene, keys, arguments;
+    } cases[] = {
+        {"builtin:cubes", R"("frames": 3, "orbit_deg": 20)", "--frames 3 --orbit 20"},
+        {"builtin:zoo", R"("start": 2, "frames": 2, "anti_aliasing": "taa:variance",
+            "taa": "sigma=2,jitter=r2")",
+         "--start 2 --frames 2 --aa taa:variance --taa sigma=2,jitter=r2"},
+        {"builtin:triangle", R"("cameras": "cameras.json")", "--cameras cameras.json"},
+        {"scene.json", R"("tone_map": "reinhard")", "--tone-map reinhard"},
+        {"scene.json", R"("view": "side", "anti_aliasing": "ssaa:5")", "--view side --aa ssaa:5"},
+        {"scene.json", R"("samples": 3)", "--samples 3"},
+    };
+    for (const auto& c : cases) {
+        INFO(c.scene << " " << c.keys);
+        folder.write("golden.json",
+                     R"({"cases": [{"name": "a", "resolution": [60, 40], "scene": ")" + c.scene +
+                         "\", " + c.keys + "}]}");
+        REQUIRE(shell(folder.path(), "stillframe golden record .").code == 0);
+        // "0 depth HASH TILES" here, "frame 0 output HASH color HASH depth HASH …" there.
+        const Ran recorded = shell(folder.path(),
+                                   "grep -v '^st\\|^si\\|linear\\|motion\\|color' a.hashes | "
+                                   "awk '{print $1, $2, $3}' | sort");
+        const Ran rendered =
+            shell(folder.path(), "stillframe render " + c.scene + " --resolution 60x40 --hash " +
+                                     c.arguments +
+                                     " | awk '{for (i = 3; i < NF; i += 2) print $2, $i, $(i + 1)}'"
+                                     " | grep -v 'motion\\|color' | sort");
+        CHECK(std::count(rendered.out.begin(), rendered.out.end(), '\n') >= 4);
+        CHECK(recorded.out == rendered.out);
+    }
+}
+
 TEST_CASE("golden: recording again writes the same bytes, and takes away only what it wrote",
           "[cli]") {
     const TempFolder folder;
