@@ -33,11 +33,11 @@ Subcommand declareGolden(CLI::App& app) {
     CLI::App* record = golden->add_subcommand(
         "record", "Render the cases of DIR/golden.json and keep hashes and PNGs in DIR");
     addGoldenOptions(*record, *o);
-    record->add_flag("--quiet", o->quiet, "No progress, no list");
+    record->add_flag("--quiet", o->quiet, "No progress, no warnings, no list");
     CLI::App* verify = golden->add_subcommand(
         "verify", "Render again and compare; exit code 1 when anything differs");
     addGoldenOptions(*verify, *o);
-    verify->add_flag("--quiet", o->quiet, "No progress, and nothing when all are equal");
+    verify->add_flag("--quiet", o->quiet, "No progress, no warnings, nothing when all are equal");
     verify
         ->add_option("-o,--output", o->output,
                      "Folder for pictures and page of what differs, default DIR/out")

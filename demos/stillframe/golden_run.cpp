@@ -38,11 +38,11 @@ Outcome<void> chooseCases(GoldenRun& run) {
     return {};
 }
 
-void startProgress(GoldenRun& run) {
+void startProgress(GoldenRun& run, bool quiet) {
     const int frames = std::accumulate(
         run.cases.begin(), run.cases.end(), 0,
         [](int sum, const golden::Case* one) { return sum + int(one->frames.size()); });
-    run.progress.emplace(std::max(1, frames));
+    run.progress.emplace(std::max(1, frames), quiet);
     run.options.frame_done = [&run] { run.progress->show(++run.frames_done); };
 }
 
@@ -61,22 +61,26 @@ Outcome<std::unique_ptr<GoldenRun>> openGolden(const GoldenOptions& options) {
     run->options.threads = options.threads;
     run->options.builtin = builtinScene;
     run->options.cache_folder = usersCacheFolder();
-    run->options.warn = [&warnings = run->warnings](const std::string& warning) {
-        warnings.push_back(warning);
-    };
+    if (!options.quiet) {
+        run->options.warn = [&warnings = run->warnings](const std::string& warning) {
+            if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
+                warnings.push_back(warning);
+            }
+        };
+    }
     return (options.shard.empty() ? Outcome<void>() : parseShard(options.shard, run->options))
         .and_then([&] { return parseSimd(options.simd); })
         .map([&](SimdTarget simd) { run->options.simd = simd; })
         .and_then([&] { return fromResult(golden::readManifest(options.folder)); })
         .map([&](golden::Manifest manifest) {
             run->manifest = std::move(manifest);
-            printWarnings(run->manifest.warnings);
+            if (!options.quiet) {
+                run->warnings = run->manifest.warnings;
+            }
         })
         .and_then([&] { return chooseCases(*run); })
         .map([&] {
-            if (!options.quiet) {
-                startProgress(*run);
-            }
+            startProgress(*run, options.quiet);
             return std::move(run);
         });
 }

@@ -17,9 +17,9 @@ struct GoldenRun {
     golden::Manifest manifest;
     std::vector<const golden::Case*> cases;
     golden::Options options;
-    std::optional<ProgressBar> progress;  ///< counts frames; none when quiet
+    std::optional<ProgressBar> progress;  ///< counts frames
     int frames_done = 0;
-    std::vector<std::string> warnings;  ///< of scenes, to be printed when the bar is gone
+    std::vector<std::string> warnings;  ///< of manifest and scenes; printed when the bar is gone
 
     GoldenRun() = default;
     GoldenRun(const GoldenRun&) = delete;
@@ -29,7 +29,7 @@ struct GoldenRun {
     void finish();
 };
 
-/// Reads the manifest, whose warnings go to standard error, and chooses the cases.
+/// Reads the manifest and chooses the cases. Quiet runs have neither progress nor warnings.
 Outcome<std::unique_ptr<GoldenRun>> openGolden(const GoldenOptions& options);
 
 }  // namespace still::command

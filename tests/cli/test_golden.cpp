@@ -372,6 +372,24 @@ TEST_CASE("golden: what cannot be read is said in one line with code 3, after th
     CHECK(isOneErrorLine(broken.err));
 }
 
+TEST_CASE("golden: warnings of manifest and scenes are told once, and not when quiet", "[cli]") {
+    const TempFolder folder;
+    folder.write("golden.json", R"({"cases": [{"name": "a", "scene": "scene.json",
+        "resolution": [40, 30], "colour": 1}, {"name": "b", "scene": "scene.json",
+        "resolution": [30, 40]}]})");
+    folder.write("scene.json", R"({"objects": [{"shape": "torus"}], "sky": 2})");
+    for (const char* action : {"record", "verify"}) {
+        const std::string command = std::string("stillframe golden ") + action + " .";
+        const Ran ran = shell(folder.path(), command);
+        INFO(ran.err);
+        CHECK(ran.code == 0);
+        CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 2);
+        CHECK(has(ran.err, "stillframe: warning: ./golden.json: /cases/0/colour: unknown key"));
+        CHECK(has(ran.err, "stillframe: warning: ./scene.json: /sky: unknown key"));
+        CHECK(shell(folder.path(), command + " --quiet").err.empty());
+    }
+}
+
 TEST_CASE("golden: a recording that is interrupted leaves nothing half-written", "[cli]") {
     const TempFolder folder;
     folder.write("golden.json", R"({"cases": [{"name": "c", "scene": "builtin:courtyard",
