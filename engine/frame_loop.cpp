@@ -494,8 +494,4 @@ std::vector<TileWork> FrameLoop::tileWork() const {
     return std::vector<TileWork>(s.gbuffer.tiles.size(), {.drawn = true, .resolved = true});
 }
 
-void FrameLoop::overdraw(ImageView<uint16_t> out) const {
-    state_->rasterizer.overdraw(out, state_->workers);
-}
-
 }  // namespace still

@@ -108,9 +108,6 @@ class FrameLoop {
     /// Of each tile, row by row; empty before the first frame. Without Method::gather every tile is
     /// drawn and resolved in every frame.
     std::vector<TileWork> tileWork() const;
-    /// Triangles at each pixel's sample: Rasterizer::overdraw. A frame that needed no sample shows
-    /// those of the last one that was rasterized. `out` has the last frame's size.
-    void overdraw(ImageView<uint16_t> out) const;
 
   private:
     struct State;
