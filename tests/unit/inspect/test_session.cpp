@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
+#include "engine/camera.h"
+#include "engine/load.h"
+#include "tests/support/data_path.h"
 #include "tests/unit/inspect/session_tools.h"
 
 using namespace still;
@@ -66,6 +69,25 @@ TEST_CASE("session: a recording is rendered again with the same bytes", "[unit][
             }
         }
     }
+}
+
+TEST_CASE("session: a recording can be saved, loaded and rendered to the same bytes",
+          "[unit][session]") {
+    Workers workers(2);
+    const TempFolder folder;
+    Session session(sceneNamed("cubes"), testSettings(), workers);
+    session.play(true);
+    for (int i = 0; i < 9; ++i) {
+        session.steer().orbit(0.013, 0.007);
+        session.draw();
+    }
+    const CameraFile loaded =
+        loadCameraFile(folder.write("seen.json", cameraFileText(session.recording(0)))).value();
+    FrameSettings settings = session.paneSettings(0);
+    settings.camera.file = &loaded;
+    CHECK(loaded.width == settings.width);
+    FrameLoop loop(session.scene(), settings, workers);
+    CHECK(hashPlane(loop.render(int(loaded.frames.size()) - 1).output) == session.hash(0));
 }
 
 TEST_CASE("session: nothing changed, nothing done", "[unit][session]") {
