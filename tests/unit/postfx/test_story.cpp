@@ -299,6 +299,18 @@ TEST_CASE("story: the gather names why the past does not count", "[postfx][unit]
             });
         CHECK(nearer);
     }
+    SECTION("what a thing left that began to move is its own old place") {
+        World world{112, 80, false, {backdrop(), square(8, [](int) { return Pose{{40, 40}}; })}};
+        Player player;
+        player.play(world, 0, 9);
+        world.layers[1].pose = [](int frame) { return Pose{{40.0 + (frame - 9) * 4, 40}}; };
+        world.layers[1].moves = true;
+        player.play(world, 10, 10);
+        const PixelStory story = player.taa.story(player.gbuffer, 34, 40);
+        CHECK(story.owner.surface == 1);
+        CHECK(story.reason == Verdict::velocity);
+        CHECK(story.lost > 200);
+    }
     SECTION("a change of light makes the past old, a change of one surface only its own") {
         Player player;
         player.play(panning(1.3, 0), 0, 8);
