@@ -118,6 +118,21 @@ Result<void> open(const Manifest& manifest, const Case& golden_case, const Optio
     return {};
 }
 
+/// Number of different pixels in the rectangle; the first one, if any, goes into `difference`.
+uint64_t countDifferences(ImageView<const Rgb8> a, ImageView<const Rgb8> b,
+                          const TileRectangle& rectangle, FrameDifference& difference) {
+    uint64_t pixels = 0;
+    for (int y = rectangle.y; y < rectangle.y + rectangle.height; ++y) {
+        for (int x = rectangle.x; x < rectangle.x + rectangle.width; ++x) {
+            if (a.at(x, y) != b.at(x, y) && pixels++ == 0) {
+                difference.first_x = x;
+                difference.first_y = y;
+            }
+        }
+    }
+    return pixels;
+}
+
 /// Takes the expected picture in if it is the recorded one, and compares.
 void comparePictures(const std::filesystem::path& file, const StageHash& recorded,
                      FrameDifference& difference) {
@@ -128,16 +143,11 @@ void comparePictures(const std::filesystem::path& file, const StageHash& recorde
     difference.expected = std::move(*expected);
     const ImageView<const Rgb8> a = std::as_const(difference.expected).view();
     const ImageView<const Rgb8> b = std::as_const(difference.actual).view();
-    uint64_t pixels = 0;
-    for (int y = 0; y < a.height; ++y) {
-        for (int x = 0; x < a.width; ++x) {
-            if (a.at(x, y) != b.at(x, y) && pixels++ == 0) {
-                difference.first_x = x;
-                difference.first_y = y;
-            }
-        }
+    difference.pixels = countDifferences(a, b, {0, 0, 0, 0, a.width, a.height}, difference);
+    if (!difference.stages.tiles.empty()) {
+        countDifferences(a, b, tileRectangle(difference.stages.tiles.front(), a.width, a.height),
+                         difference);
     }
-    difference.pixels = pixels;
     difference.psnr_db = psnrDb(pixelError(a, b));
 }
 
@@ -172,7 +182,7 @@ std::string pixelsText(const Manifest& manifest, const std::string& name,
     char psnr[32];
     std::snprintf(psnr, sizeof psnr, "%.1f", difference.psnr_db);
     return std::to_string(*difference.pixels) + (*difference.pixels > 1 ? " pixels" : " pixel") +
-           ", the first at " + std::to_string(x) + "," + std::to_string(y) + ": " +
+           ", first at " + std::to_string(x) + "," + std::to_string(y) + ": " +
            shown(difference.actual.at(x, y)) + ", expected " + shown(difference.expected.at(x, y)) +
            "; PSNR " + psnr + " dB";
 }

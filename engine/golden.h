@@ -109,8 +109,10 @@ struct FrameDifference {
     Image<Rgb8> actual;
     Image<Rgb8> expected;  ///< empty when the recorded picture is not there, or is another one
     std::optional<uint64_t> pixels;  ///< how many are different; nothing without `expected`
-    int first_x = -1, first_y = -1;  ///< the topmost and in its row leftmost one; −1: none
-    double psnr_db = 0;              ///< infinite when pictures are equal
+    /// The topmost and in its row leftmost one of the first tile of `stages`, if that has one, else
+    /// of the picture; −1: none.
+    int first_x = -1, first_y = -1;
+    double psnr_db = 0;  ///< infinite when pictures are equal
 };
 
 struct CaseVerdict {

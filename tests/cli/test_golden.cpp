@@ -17,16 +17,20 @@ bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-/// A picture of 12 × 8 grey texels; with `odd`, the lowest bit of one channel of texel (5, 5) is
-/// flipped.
-void writeTexture(const std::filesystem::path& file, bool odd) {
+using Texels = std::vector<std::pair<int, int>>;
+const Texels kOne{{5, 5}};
+
+/// A picture of 12 × 8 texels; the lowest bit of one channel of `odd` texels is flipped.
+void writeTexture(const std::filesystem::path& file, const Texels& odd) {
     Image<Rgb8> image(12, 8);
     for (int y = 0; y < 8; ++y) {
         for (int x = 0; x < 12; ++x) {
             image.at(x, y) = {200, 160, uint8_t(40 + 10 * x + y)};
         }
     }
-    image.at(5, 5).g ^= odd ? 1 : 0;
+    for (const auto& [x, y] : odd) {
+        image.at(x, y).g ^= 1;
+    }
     command::Interruption interruption;
     REQUIRE(command::savePng(file, std::as_const(image).view(), interruption));
 }
@@ -34,8 +38,8 @@ void writeTexture(const std::filesystem::path& file, bool odd) {
 /// A wall that fills a picture of 192 × 128, so that a texel covers 16 × 16 pixels, and is shown
 /// from frame 3 on with another image.
 void writeWall(const TempFolder& folder) {
-    writeTexture(folder.path() / "early.png", false);
-    writeTexture(folder.path() / "late.png", false);
+    writeTexture(folder.path() / "early.png", {});
+    writeTexture(folder.path() / "late.png", {});
     folder.write("wall.obj",
                  "mtllib wall.mtl\nv -1.5 -1 0\nv 1.5 -1 0\nv 1.5 1 0\nv -1.5 1 0\nvt 0 0\nvt 1 0\n"
                  "vt 1 1\nvt 0 1\nusemtl wall\nf 1/1 2/2 3/3 4/4\n");
@@ -66,7 +70,7 @@ TEST_CASE("golden: finds a one-bit change made on purpose in one tile of one fra
     REQUIRE(shell(folder.path(), "stillframe golden record .").code == 0);
     CHECK(shell(folder.path(), "stillframe golden verify .").code == 0);
 
-    writeTexture(folder.path() / "late.png", true);
+    writeTexture(folder.path() / "late.png", kOne);
     const Ran ran = shell(folder.path(), "stillframe golden verify .");
     INFO(ran.out << ran.err);
     CHECK(ran.code == 1);
@@ -99,7 +103,7 @@ TEST_CASE("golden: finds a one-bit change made on purpose in one tile of one fra
                 first_y = differs && first_y < 0 ? y : first_y;
             }
         }
-        CHECK(has(ran.out, "the first at " + std::to_string(first_x) + "," +
+        CHECK(has(ran.out, "pixels, first at " + std::to_string(first_x) + "," +
                                std::to_string(first_y) + ": "));
     }
     SECTION("the page holds three cases, without outside parts") {
@@ -145,7 +149,7 @@ TEST_CASE("golden: the page's keys and buttons switch pictures in a real browser
     writeWall(folder);
     folder.write("golden.json", kManifest);
     REQUIRE(shell(folder.path(), "stillframe golden record . --quiet").code == 0);
-    writeTexture(folder.path() / "late.png", true);
+    writeTexture(folder.path() / "late.png", kOne);
     CHECK(shell(folder.path(), "stillframe golden verify .").code == 1);
     std::string page = contentsOf(folder.path() / "out/report.html");
     // Notes after each key what is seen: the name of the case and of its visible pictures.
@@ -192,6 +196,23 @@ onload = () => {
     // Flickering shows the two in turns.
     CHECK((has(notes, "later=wall-raw:expected;still later=wall-raw:actual") ||
            has(notes, "later=wall-raw:actual;still later=wall-raw:expected")));
+}
+
+TEST_CASE("golden: the first pixel is one of the first tile, if that has any", "[cli]") {
+    const TempFolder folder;
+    writeWall(folder);
+    folder.write("golden.json", kManifest);
+    REQUIRE(shell(folder.path(), "stillframe golden record . --quiet").code == 0);
+    // The higher one lies in tile (2, 0).
+    writeTexture(folder.path() / "late.png", {{2, 2}, {9, 1}});
+    const Ran ran = shell(folder.path(), "stillframe golden verify . --only wall-raw --json");
+    std::string text = ran.out;
+    std::erase_if(text, [](char c) { return c == ' ' || c == '\n'; });
+    INFO(text);
+    CHECK(has(text, "\"tile\":[0,0],\"rectangle\":[0,0,64,64],\"tiles\":2,\"first_pixel\":["));
+    const size_t at = text.find("\"first_pixel\":[") + sizeof("\"first_pixel\":[") - 1;
+    CHECK(std::stoi(text.substr(at)) < 64);
+    CHECK(has(text, "\"pixels\":"));
 }
 
 TEST_CASE("golden: verifying finds the same with any thread count and instruction set", "[cli]") {
@@ -286,7 +307,7 @@ TEST_CASE("golden: recording again writes the same bytes, and takes away only wh
     }
     SECTION("a picture that somebody has changed is not taken away") {
         manifest(cubes + "[1, 2]}");
-        writeTexture(folder.path() / "cubes.0000.png", false);
+        writeTexture(folder.path() / "cubes.0000.png", {});
         REQUIRE(shell(folder.path(), record).code == 0);
         CHECK(std::filesystem::exists(folder.path() / "cubes.0000.png"));
     }
@@ -317,7 +338,7 @@ TEST_CASE("golden: a picture that is lost or exchanged does not hide the differe
     writeWall(folder);
     folder.write("golden.json", kManifest);
     REQUIRE(shell(folder.path(), "stillframe golden record . --quiet").code == 0);
-    writeTexture(folder.path() / "late.png", true);
+    writeTexture(folder.path() / "late.png", kOne);
     for (const char* change : {"rm wall.0003.png", "cp wall.0002.png wall.0003.png"}) {
         const Ran ran =
             shell(folder.path(), std::string(change) + "; stillframe golden verify . --only wall");
@@ -360,7 +381,7 @@ TEST_CASE("golden: what cannot be read is said in one line with code 3, after th
     writeWall(folder);
     folder.write("golden.json", kManifest);
     REQUIRE(shell(folder.path(), "stillframe golden record . --quiet").code == 0);
-    writeTexture(folder.path() / "late.png", true);
+    writeTexture(folder.path() / "late.png", kOne);
     REQUIRE(shell(folder.path(), "echo 'stillframe golden 1' > wall.hashes").code == 0);
     const Ran ran = shell(folder.path(), "stillframe golden verify .");
     CHECK(ran.code == 3);
