@@ -150,8 +150,10 @@ CameraFileFrame Director::take(const Scene& scene, double aspect) {
     }
     entry.jitter_fx8.reset();  // it would be the same in every frame while time stands
     entry.scene_frame = scene_frame_;
-    entry.cut |= jumped_;
+    // A cut of the scene's own file is one when time arrives there, not while it stands.
+    entry.cut = jumped_ || (entry.cut && scene_frame_ != taken_frame_);
     jumped_ = false;
+    taken_frame_ = scene_frame_;
     return entry;
 }
 

@@ -42,6 +42,7 @@ class Director {
     bool playing_ = false;
     bool jumped_ = true;
     int scene_frame_ = 0, last_scene_frame_ = 0;
+    int taken_frame_ = -1;  ///< what the last take() saw
 };
 
 }  // namespace still::inspect

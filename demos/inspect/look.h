@@ -50,7 +50,7 @@ struct PaneSettings {
 struct Magnifier {
     bool on = false;
     int x = 0, y = 0;    ///< pixel of the window in the middle of it
-    int factor = 8;      ///< 4, 8 or 16 pixels of the window for one of the picture
+    int factor = 8;      ///< 2 … 64 pixels of the window for one of the picture
     bool grid = true;    ///< lines between the pixels
     bool jitter = true;  ///< the middle pixel once more in the corner, with its samples' places
     friend bool operator==(const Magnifier&, const Magnifier&) = default;

@@ -91,8 +91,9 @@ int lensPixels(int factor, int window_width, int window_height) {
 
 void drawMagnifier(const Magnifier& magnifier, std::span<const LensSource> panes,
                    ImageView<Rgb8> out) {
-    const int pixels = lensPixels(magnifier.factor, out.width, out.height);
-    const int side = pixels * magnifier.factor, width = side * int(panes.size());
+    const int factor = std::clamp(magnifier.factor, 2, 64);
+    const int pixels = lensPixels(factor, out.width, out.height);
+    const int side = pixels * factor, width = side * int(panes.size());
     const auto within = [](int wanted, int size, int room) {
         return std::clamp(wanted, 1, std::max(1, room - size - 1));
     };
@@ -101,7 +102,7 @@ void drawMagnifier(const Magnifier& magnifier, std::span<const LensSource> panes
     fillRectangle(out, left - 1, top - 1, width + 2, side + 2, kFrame);
     for (size_t i = 0; i < panes.size(); ++i) {
         const LensSource& source = panes[i];
-        const Lens lens{source, out, left + int(i) * side, top, pixels, magnifier.factor};
+        const Lens lens{source, out, left + int(i) * side, top, pixels, factor};
         lens.drawPixels(magnifier.grid);
         if (i > 0) {
             fillRectangle(out, lens.left, top, 1, side, kFrame);

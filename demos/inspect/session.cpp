@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 
 #include "demos/inspect/session_state.h"
@@ -33,9 +34,17 @@ void Session::resize(int width, int height) {
 
 void Session::setRenderScale(int percent) {
     assert(percent >= 10 && percent <= 100);
-    if (percent != state_->render_percent) {
-        state_->render_percent = percent;
-        state_->beginFilm();
+    if (percent == state_->render_percent) {
+        return;
+    }
+    std::optional<PickedPixel> picked = state_->look.picked;
+    const int width = renderWidth(), height = renderHeight();
+    state_->render_percent = percent;
+    state_->beginFilm();
+    if (picked) {  // the pixel that covers the old one's middle
+        picked->x = (2 * picked->x + 1) * renderWidth() / (2 * width);
+        picked->y = (2 * picked->y + 1) * renderHeight() / (2 * height);
+        state_->look.picked = picked;
     }
 }
 

@@ -70,8 +70,8 @@ ImageView<const Rgb8> Session::State::shownPicture(const Slot& slot) const {
 }
 
 int Session::State::dividerColumn() const {
-    const int column = int(look.divider * settings.width + 0.5);
-    return look.split ? std::clamp(column, 0, settings.width) : settings.width;
+    const double place = look.divider > 0 ? std::min(look.divider, 1.0) : 0;
+    return look.split ? int(place * settings.width + 0.5) : settings.width;
 }
 
 LensPixel Session::State::renderPixel(int x, int y) const {

@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
+#include "engine/camera.h"
 #include "tests/unit/inspect/session_tools.h"
 
 using namespace still;
@@ -174,6 +175,42 @@ TEST_CASE("session: another size begins anew and is that of the picture", "[unit
     CHECK(session.draw().image.width == 97);
     session.resize(1, 1);
     CHECK(session.draw().image.height == 1);
+}
+
+TEST_CASE("session: a picked pixel stays where it is when the panes' scale changes",
+          "[unit][session]") {
+    Workers workers(2);
+    Session session(sceneNamed("cubes"), testSettings(), workers);
+    for (int x = 0; x < kTestWidth; x += 13) {
+        session.pick(x, kTestHeight - 1);
+        session.setRenderScale(30);
+        CHECK(std::abs(session.look().picked->x - x * 3 / 10) <= 1);
+        CHECK(session.look().picked->x < session.renderWidth());
+        CHECK(session.look().picked->y == session.renderHeight() - 1);
+        session.setRenderScale(100);
+        CHECK(std::abs(session.look().picked->x - x) <= 3);
+    }
+}
+
+TEST_CASE("session: a scene's own matrices are followed, and their cuts let time stand",
+          "[unit][session]") {
+    Workers workers(2);
+    Scene scene = sceneNamed("triangle");
+    scene.camera_file = CameraFile{.width = 10, .height = 10};
+    for (int frame = 0; frame < 4; ++frame) {
+        const CameraPose pose{.eye = {0.1 * frame, 0.2, 4}};
+        scene.camera_file->frames.push_back(cameraFrame(pose, 0.1, 100, 1));
+        scene.camera_file->frames.back().cut = frame == 2;
+    }
+    Session session(std::move(scene), testSettings(), workers);
+    for (int frame = 0; frame < 4; ++frame) {
+        session.scrub(frame);
+        session.draw();
+        const CameraFileFrame entry = lastEntry(session.recording(0));
+        CHECK(entry.view == session.scene().camera_file->frames[size_t(frame)].view);
+        CHECK(entry.cut == (frame == 2 || frame == 0));
+        CHECK(drawToRest(session, 300) < 300);
+    }
 }
 
 TEST_CASE("session: a scene loaded again keeps camera and time when asked to", "[unit][session]") {
