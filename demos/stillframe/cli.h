@@ -30,6 +30,8 @@ Subcommand declareBench(CLI::App& app);
 Subcommand declareGolden(CLI::App& app);
 // cli_completion.cpp
 Subcommand declareCompletion(CLI::App& app);
+// cli_view.cpp, which is there with the build option STILL_VIEWER
+Subcommand declareView(CLI::App& app);
 
 constexpr int kMaxFrames = 1000000;
 

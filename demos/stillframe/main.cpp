@@ -24,9 +24,12 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", "stillframe " STILL_VERSION);
     app.require_subcommand(1);
     app.footer(kExitCodes);
-    const std::vector<Subcommand> subcommands{
+    std::vector<Subcommand> subcommands{
         declareRender(app), declareCompare(app), declareAtlas(app), declareChart(app),
         declareBench(app),  declarePresets(app), declareGolden(app)};
+#if STILL_VIEWER
+    subcommands.push_back(declareView(app));
+#endif
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

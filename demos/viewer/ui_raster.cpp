@@ -128,21 +128,26 @@ struct Edge {
     }
 };
 
+/// What a command's triangles are covered with: the atlas, or a picture.
+struct Texture {
+    ImageView<const uint8_t> atlas{};
+    ImageView<const Rgb8> picture{};  ///< goes first unless it is empty
+
+    int width() const { return picture.empty() ? atlas.width : picture.width; }
+    int height() const { return picture.empty() ? atlas.height : picture.height; }
+};
+
 class Painter {
   public:
     Painter(ImageView<const uint8_t> atlas, ImageView<Xrgb8> canvas)
-        : atlas_(atlas), canvas_(canvas) {}
+        : atlas_(atlas), texture_{atlas, {}}, canvas_(canvas) {}
 
     void draw(const ImDrawList& list, ImVec2 origin);
 
   private:
     void setClip(const ImVec4& clip, ImVec2 origin);
     Corner cornerOf(const ImDrawVert& vertex, ImVec2 origin) const;
-    uint32_t coverage(int64_t u, int64_t v) const {
-        return atlas_.at(int(std::min<int64_t>(u, atlas_.width - 1)),
-                         int(std::min<int64_t>(v, atlas_.height - 1)));
-    }
-    /// One opacity all over: the ink that it comes to.
+    /// A corner's colour through a texel.
     Ink inkOf(const Corner& corner, int64_t u_fx8, int64_t v_fx8) const;
     bool rectangle(const std::array<Corner, 4>& corners);
     void glyph(const Corner& first, const Corner& last, Span columns, Span rows);
@@ -151,6 +156,7 @@ class Painter {
                     Span span);
 
     ImageView<const uint8_t> atlas_;
+    Texture texture_;  ///< of the command
     ImageView<Xrgb8> canvas_;
     Span clip_x_, clip_y_;
     std::vector<int64_t> u_of_column_fx8_;
@@ -169,8 +175,8 @@ Corner Painter::cornerOf(const ImDrawVert& vertex, ImVec2 origin) const {
     const auto channel = [&](int shift) { return int64_t(vertex.col >> shift & 0xff); };
     return {fixed(vertex.pos.x - origin.x, kPositionLimit, kOne_fx6),
             fixed(vertex.pos.y - origin.y, kPositionLimit, kOne_fx6),
-            texel(vertex.uv.x, atlas_.width),
-            texel(vertex.uv.y, atlas_.height),
+            texel(vertex.uv.x, texture_.width()),
+            texel(vertex.uv.y, texture_.height()),
             {channel(IM_COL32_R_SHIFT), channel(IM_COL32_G_SHIFT), channel(IM_COL32_B_SHIFT),
              channel(IM_COL32_A_SHIFT)}};
 }
@@ -186,9 +192,15 @@ void Painter::setClip(const ImVec4& clip, ImVec2 origin) {
 }
 
 Ink Painter::inkOf(const Corner& corner, int64_t u_fx8, int64_t v_fx8) const {
-    const auto& [r, g, b, a] = corner.rgba;
-    return {packed(uint32_t(r), uint32_t(g), uint32_t(b)),
-            times(uint32_t(a), coverage(u_fx8 >> kTexelBits, v_fx8 >> kTexelBits))};
+    const auto r = uint32_t(corner.rgba[0]), g = uint32_t(corner.rgba[1]);
+    const auto b = uint32_t(corner.rgba[2]), a = uint32_t(corner.rgba[3]);
+    const int u = int(std::min<int64_t>(u_fx8 >> kTexelBits, texture_.width() - 1));
+    const int v = int(std::min<int64_t>(v_fx8 >> kTexelBits, texture_.height() - 1));
+    if (texture_.picture.empty()) {
+        return {packed(r, g, b), times(a, texture_.atlas.at(u, v))};
+    }
+    const Rgb8 texel = texture_.picture.at(u, v);
+    return {packed(times(r, texel.r), times(g, texel.g), times(b, texel.b)), a};
 }
 
 /// Draws corners in order around an axis-aligned rectangle of one colour and an upright piece of
@@ -310,6 +322,8 @@ void Painter::draw(const ImDrawList& list, ImVec2 origin) {
             continue;
         }
         setClip(command.ClipRect, origin);
+        const auto* picture = static_cast<const ImageView<const Rgb8>*>(command.TextureId);
+        texture_ = {atlas_, picture != nullptr ? *picture : ImageView<const Rgb8>{}};
         const ImDrawIdx* index = list.IdxBuffer.Data + command.IdxOffset;
         const ImDrawIdx* end = index + command.ElemCount;
         const auto corner = [&](int i) {

@@ -18,7 +18,9 @@ using Xrgb8 = uint32_t;
 /// A pixel belongs to a triangle when its centre does, on edges by the top-left rule, so neighbours
 /// neither overlap nor leave gaps; corners are rounded to 1/64 pixel and held within ±16384.
 /// `atlas` is Dear ImGui's alpha texture, at most 4096 texels wide and high, read at the nearest
-/// texel: glyphs are drawn texel by pixel. User callbacks are passed over.
+/// texel: glyphs are drawn texel by pixel. A command whose texture is not null has a pointer to an
+/// ImageView<const Rgb8> there, of at most 4096 × 4096 pixels, which is read in the same way. User
+/// callbacks are passed over.
 void drawUi(const ImDrawData& data, ImageView<const uint8_t> atlas, ImageView<Xrgb8> canvas);
 
 }  // namespace still::viewer

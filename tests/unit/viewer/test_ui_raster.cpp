@@ -51,8 +51,8 @@ bool inside(const Placed& a, const Placed& b, int64_t x, int64_t y) {
 
 class Oracle {
   public:
-    Oracle(ImageView<const uint8_t> atlas, ImageView<Xrgb8> canvas)
-        : atlas_(atlas), canvas_(canvas) {}
+    Oracle(ImageView<const uint8_t> atlas, ImageView<const Rgb8> picture, ImageView<Xrgb8> canvas)
+        : atlas_(atlas), picture_(picture), canvas_(canvas) {}
 
     void triangle(Placed a, Placed b, Placed c, const ImVec4& clip) {
         if (side(a, b, c.x, c.y) < 0) {
@@ -87,9 +87,16 @@ class Oracle {
         for (size_t k = 0; k < 4; ++k) {
             rgba[k] = (wa * a.rgba[k] + wb * b.rgba[k] + wc * c.rgba[k] + total / 2) / total;
         }
-        const int64_t coverage = atlas_.at(texel(a.u, b.u, c.u, kAtlasWidth),  //
-                                           texel(a.v, b.v, c.v, kAtlasHeight));
-        const int64_t alpha = (rgba[3] * coverage + 127) / 255;
+        const int u = texel(a.u, b.u, c.u, kAtlasWidth), v = texel(a.v, b.v, c.v, kAtlasHeight);
+        int64_t alpha = rgba[3];
+        if (picture_.empty()) {
+            alpha = (alpha * atlas_.at(u, v) + 127) / 255;
+        } else {
+            const Rgb8 seen = picture_.at(u, v);
+            rgba[0] = (rgba[0] * seen.r + 127) / 255;
+            rgba[1] = (rgba[1] * seen.g + 127) / 255;
+            rgba[2] = (rgba[2] * seen.b + 127) / 255;
+        }
         Xrgb8& under = canvas_.at(px, py);
         Xrgb8 mixed = 0;
         for (size_t k = 0; k < 3; ++k) {
@@ -100,6 +107,7 @@ class Oracle {
     }
 
     ImageView<const uint8_t> atlas_;
+    ImageView<const Rgb8> picture_;
     ImageView<Xrgb8> canvas_;
 };
 
@@ -107,10 +115,14 @@ class Oracle {
 class Scribble {
   public:
     explicit Scribble(unsigned seed)
-        : random_(seed), atlas_(kAtlasWidth, kAtlasHeight), canvas_(kWidth, kHeight) {
+        : random_(seed),
+          atlas_(kAtlasWidth, kAtlasHeight),
+          picture_(kAtlasWidth, kAtlasHeight),
+          canvas_(kWidth, kHeight) {
         for (int y = 0; y < kAtlasHeight; ++y) {
             for (int x = 0; x < kAtlasWidth; ++x) {
                 atlas_.at(x, y) = uint8_t(oneOf(3) == 0 ? random_() : oneOf(2) * 255);
+                picture_.at(x, y) = {uint8_t(random_()), uint8_t(random_()), uint8_t(random_())};
             }
         }
         for (int y = 0; y < kHeight; ++y) {
@@ -156,6 +168,7 @@ class Scribble {
             list_.CmdBuffer.empty()
                 ? 0
                 : int(list_.CmdBuffer.back().IdxOffset + list_.CmdBuffer.back().ElemCount);
+        command.TextureId = oneOf(3) == 0 ? static_cast<void*>(&picture_view_) : nullptr;
         command.IdxOffset = unsigned(before);
         command.ElemCount = unsigned(list_.IdxBuffer.Size - before);
         list_.CmdBuffer.push_back(command);
@@ -172,8 +185,10 @@ class Scribble {
     }
     std::vector<Xrgb8> expected() {
         Image<Xrgb8> canvas = copy();
-        Oracle oracle(atlas_.view(), canvas.view());
         for (const ImDrawCmd& command : list_.CmdBuffer) {
+            const bool pictured = command.TextureId != nullptr;
+            Oracle oracle(atlas_.view(), pictured ? picture_view_ : ImageView<const Rgb8>{},
+                          canvas.view());
             for (unsigned i = 0; i < command.ElemCount; i += 3) {
                 const auto corner = [&](unsigned k) {
                     return placed(list_.VtxBuffer[list_.IdxBuffer[int(command.IdxOffset + i + k)]]);
@@ -223,6 +238,8 @@ class Scribble {
 
     std::mt19937 random_;
     Image<uint8_t> atlas_;
+    Image<Rgb8> picture_;
+    ImageView<const Rgb8> picture_view_ = picture_.view();
     Image<Xrgb8> canvas_;
     ImDrawList list_{nullptr};
 };
