@@ -14,17 +14,12 @@ constexpr int kDividerReach_px = 5;
 constexpr double kOrbitTurns = 0.5, kLookTurns = 0.25;
 /// What a notch of the wheel adds to the distance, and to the speed of flying.
 constexpr double kNotch = 0.1, kFaster = 0.25;
-/// Flying crosses the scene in so many seconds; Shift is faster by this.
-constexpr double kCrossing_s = 8, kFast = 4;
+/// Flying covers the distance of what was looked at in so many seconds; Shift is faster by this.
+constexpr double kApproach_s = 2, kFast = 4;
 
 /// As much more as less in the other direction; without pow(), which differs between machines.
 double grown(double share, double notches) {
     return notches < 0 ? 1 / (1 - share * notches) : 1 + share * notches;
-}
-
-double sizeOf(const Scene& scene, int frame) {
-    const Bounds bounds = scene.bounds(frame);
-    return bounds.valid ? glm::length(bounds.max - bounds.min) : 1.0;
 }
 
 }  // namespace
@@ -91,7 +86,8 @@ void Controls::press(const SDL_MouseButtonEvent& event) {
         drag_ = Drag::press_middle;
     } else if (event.button == SDL_BUTTON_RIGHT) {
         drag_ = Drag::look;
-        crossing_ = sizeOf(desk_.session.scene(), desk_.session.sceneFrame());
+        const CameraPose& pose = desk_.session.rig().pose();
+        distance_ = glm::distance(pose.eye, pose.target);
     }
 }
 
@@ -188,7 +184,7 @@ void Controls::advance(double seconds) {
         return;
     }
     const double step =
-        crossing_ / kCrossing_s * speed_ * seconds * ((modifiers_ & KMOD_SHIFT) != 0 ? kFast : 1);
+        distance_ / kApproach_s * speed_ * seconds * ((modifiers_ & KMOD_SHIFT) != 0 ? kFast : 1);
     const auto along = [step](bool positive, bool negative) {
         return step * (int(positive) - int(negative));
     };

@@ -39,7 +39,7 @@ class Controls {
     int from_x_ = 0, from_y_ = 0;  ///< where
     uint16_t modifiers_ = 0;       ///< as of the last key
     bool forward_ = false, back_ = false, left_ = false, right_ = false, up_ = false, down_ = false;
-    double crossing_ = 1;  ///< size of the scene
+    double distance_ = 1;  ///< to the target when flying began
     double speed_ = 1;     ///< of flying, set by the wheel
 };
 
