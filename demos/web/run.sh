@@ -18,7 +18,7 @@ esac
 
 command -v node >/dev/null || node_packages=(nodejs)
 command -v npm >/dev/null || npm_packages=(npm)
-install_packages emscripten node-acorn ${node_packages[@]+"${node_packages[@]}"}
+install_packages emscripten ${node_packages[@]+"${node_packages[@]}"}
 if [ "$task" = --test ]; then
     install_packages chromium ${npm_packages[@]+"${npm_packages[@]}"}
 fi
@@ -65,7 +65,7 @@ case "$task" in
         mkdir -p build/web/test
         cp demos/web/package.json demos/web/serve.mjs demos/web/test/*.mjs build/web/test
         (cd build/web/test && npm install --silent --no-audit --no-fund)
-        node build/web/test/page_test.mjs "$site" out/web
+        node build/web/test/page_test.mjs "$site" tests/data out/web
         ;;
     *) node demos/web/serve.mjs "$site" 8000 ;;
 esac

@@ -121,10 +121,6 @@ Result<void> Stage::configure(const json& wish) {
 bool Stage::move(const std::string& kind, double x, double y) {
     if (kind == "orbit") {
         session_.steer().orbit(x, y);
-    } else if (kind == "look") {
-        session_.steer().look(x, y);
-    } else if (kind == "pan") {
-        session_.steer().pan(x, y);
     } else if (kind == "dolly") {
         session_.steer().dolly(std::clamp(x, 0.1, 10.0));
     } else if (kind == "reset") {

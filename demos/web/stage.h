@@ -24,8 +24,8 @@ class Stage {
     /// "picture"}. What is absent stays. The error names the value and what was expected.
     Result<void> configure(const nlohmann::json& wish);
 
-    /// Moves the camera: "orbit", "pan", "look" in turns and picture heights, "dolly" by the factor
-    /// x, "fly" by x sideways and y forward in hundredths of the scene, "reset". False for others.
+    /// Moves the camera: "orbit" by x and y turns, "dolly" by the factor x, "reset". False for
+    /// others.
     bool move(const std::string& kind, double x, double y);
     void scrub(int frame) { session_.scrub(frame); }
 

@@ -36,11 +36,11 @@ export class Engine {
   }
 
   /// Resolves to what the worker's operation `op` returns.
-  ask(op, values = {}, transfer = []) {
+  ask(op, values = {}) {
     const id = ++this.#last;
     return new Promise((resolve, reject) => {
       this.#waiting.set(id, {resolve, reject});
-      this.#worker.postMessage({id, op, ...values}, transfer);
+      this.#worker.postMessage({id, op, ...values});
     });
   }
 

@@ -37,11 +37,12 @@ function adopt({key, width, height, wish}, pointer) {
   close({key});
   stages.set(key, {pointer, width, height});
   configure({key, wish});
+  return true;
 }
 
 function open(message) {
   const {scene, width, height} = message;
-  adopt(message, call('still_open', 'number', ['number', 'string', 'number', 'number'],
+  return adopt(message, call('still_open', 'number', ['number', 'string', 'number', 'number'],
     [host, scene, width, height]));
 }
 
@@ -52,15 +53,16 @@ function load(message) {
   if (!module.FS.analyzePath(folder).exists) {
     module.FS.mkdir(folder);
   }
+  module.FS.chdir(folder);
   for (const {name, bytes} of files) {
-    module.FS.writeFile(`${folder}/${name}`, new Uint8Array(bytes));
+    module.FS.writeFile(name, new Uint8Array(bytes));
   }
   try {
-    adopt(message, call('still_load', 'number', ['number', 'string', 'number', 'number'],
-      [host, `${folder}/${main}`, width, height]));
+    return adopt(message, call('still_load', 'number', ['number', 'string', 'number', 'number'],
+      [host, main, width, height]));
   } finally {
     for (const {name} of files) {
-      module.FS.unlink(`${folder}/${name}`);
+      module.FS.unlink(name);
     }
   }
 }
@@ -106,8 +108,8 @@ const operations = {
   configure,
   draw,
   story,
-  move: ({key, kind, x, y}) => call('still_move', 'boolean', ['number', 'string', 'number', 'number'],
-    [stages.get(key).pointer, kind, x, y]),
+  move: ({key, kind, x, y}) => call('still_move', 'boolean',
+    ['number', 'string', 'number', 'number'], [stages.get(key).pointer, kind, x, y]),
   scrub: ({key, frame}) => call('still_scrub', null, ['number', 'number'],
     [stages.get(key).pointer, frame]),
   pick: ({key, x, y}) => call('still_pick', null, ['number', 'number', 'number'],

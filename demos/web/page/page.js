@@ -62,12 +62,24 @@ function acceptFiles(stage, root) {
   document.getElementById('files').onchange = (event) => take(event.target.files);
 }
 
-async function main() {
+/// Where the build with threads does not start, as for want of memory, the other one may.
+async function startEngine(build) {
   const engine = new Engine();
-  const build = chooseBuild(location.search, self.crossOriginIsolated,
+  try {
+    return {engine, build, catalogue: await engine.start(build)};
+  } catch (error) {
+    if (build.name === 'single') {
+      throw error;
+    }
+    return startEngine({name: 'single', threads: 1});
+  }
+}
+
+async function main() {
+  const wanted = chooseBuild(location.search, self.crossOriginIsolated,
     navigator.hardwareConcurrency);
-  const [settings, expected, catalogue] = await Promise.all(
-    [json('steps.json'), json('expected.json'), engine.start(build)]);
+  const [settings, expected, {engine, build, catalogue}] = await Promise.all(
+    [json('steps.json'), json('expected.json'), startEngine(wanted)]);
   tell('build', build.threads > 1 ? `WebAssembly with SIMD, ${build.threads} threads`
                                   : 'WebAssembly with SIMD, one thread');
   const stages = {};

@@ -4,6 +4,7 @@
 import {button, checkbox, select, slider} from './controls.js';
 
 const kMinFrameMs = 1000 / 30;
+const kInMemory = {willReadFrequently: true}; // nothing but the processor makes the pixels
 const kDividerReach = 0.04; // of the width, on either side
 
 function element(tag, className, text = '') {
@@ -27,9 +28,11 @@ export class Stage {
   #canvas;
   #visible = false;
   #open = false;
+  #opened = 0; // how often: loops of earlier times end
   #busy = Promise.resolve();
   #playing;
-  #default = true; // nothing was changed since the scene was opened
+  #original; // modes of both sides as they are in steps.json
+  #steered = false; // the camera was moved since the scene was opened
   #divider = 0.5;
   #picked = null;
   #magnify = false;
@@ -39,6 +42,7 @@ export class Stage {
   constructor(engine, step, catalogue, expected, root) {
     this.#engine = engine;
     this.#step = structuredClone(step);
+    this.#original = this.#modes();
     this.#expected = expected;
     this.#root = root;
     this.#playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -55,7 +59,7 @@ export class Stage {
     this.#canvas = element('canvas', 'picture');
     Object.assign(this.#canvas, {width, height, tabIndex: 0});
     this.#canvas.setAttribute('role', 'application');
-    this.#canvas.setAttribute('aria-label', `${title}: live picture of ${width} × ${height} pixels. ` +
+    this.#canvas.setAttribute('aria-label', `${title}: live picture, ${width} × ${height} pixels. ` +
       (this.#step.steer ? 'Arrow keys circle, plus and minus go nearer and farther, 0 goes back.'
                         : 'Arrow keys pick a pixel, whose story is told below.'));
     this.#labels = ['left', 'right'].map((side) => element('span', `side ${side}`));
@@ -70,11 +74,13 @@ export class Stage {
     bar.append(this.#playButton, button('One frame', () => this.#oneFrame()),
       button('From the start', () => this.#restart()), this.#divide);
     this.#controls = element('div', 'controls');
+    this.#legend = element('p', 'legend');
     this.#told = element('p', 'told');
     this.#buildStory(catalogue);
     this.#trouble = element('p', 'trouble');
     this.#trouble.setAttribute('role', 'alert');
-    this.#root.append(frame, bar, this.#controls, this.#told, this.#story, this.#trouble);
+    this.#root.append(frame, bar, this.#controls, this.#legend, this.#told, this.#story,
+      this.#trouble);
     this.#buildControls(catalogue);
     this.#steering();
     this.#nameSides();
@@ -94,6 +100,7 @@ export class Stage {
   }
 
   #labels;
+  #legend;
   #plot;
   #lines;
   #divide;
@@ -114,6 +121,9 @@ export class Stage {
     for (const control of step.controls ?? []) {
       this.#controls.append(this.#control(control, catalogue));
     }
+    for (const overlay of step.overlays ?? []) {
+      this.#controls.append(this.#overlay(overlay));
+    }
     this.#controls.append(checkbox('Magnify the picked pixel', false, (on) => {
       this.#magnify = on;
       this.#picked ??= [step.width >> 1, step.height >> 1];
@@ -121,11 +131,21 @@ export class Stage {
     }));
   }
 
+  /// Drawn over both sides: "edges", "tiles", "grid", "axes", "arrows".
+  #overlay({name, label}) {
+    return checkbox(label, false, (on) => {
+      this.#overlays[name] = on;
+      this.#configure();
+    });
+  }
+  #overlays = {};
+
   #control({pane, what, key, label, min, max, step, values, names}, catalogue) {
     const target = this.#step[pane];
     const change = (value) => {
       if (what === 'aa' || what === 'view') {
         target[what] = value;
+        this.#explainViews(catalogue);
         if (what === 'aa') {
           target.taa = {};
           target.label = null;
@@ -133,7 +153,6 @@ export class Stage {
       } else {
         target.taa[key] = value;
       }
-      this.#default = false;
       this.#nameSides();
       this.#configure();
     };
@@ -150,6 +169,15 @@ export class Stage {
       return select(label, pairs, target.taa[key], change);
     }
     return slider(label, {min, max, step}, target.taa[key], change);
+  }
+
+  /// What the colours of the chosen views mean.
+  #explainViews({views}) {
+    const chosen = [this.#step.left.view, this.#step.right.view];
+    this.#legend.textContent = views
+      .filter(({name}) => name !== 'picture' && chosen.includes(name))
+      .map(({name, about}) => `${name}: ${about}`)
+      .join('. ');
   }
 
   #nameSides() {
@@ -242,7 +270,7 @@ export class Stage {
   }
 
   #move(kind, x, y) {
-    this.#default = false;
+    this.#steered = true;
     this.#ask('move', {kind, x, y});
     this.#draw();
   }
@@ -264,20 +292,20 @@ export class Stage {
     this.#draw();
   }
 
-  async #restart() {
-    await this.#close();
-    this.#default = true;
+  #restart() {
+    this.#close();
+    this.#steered = false;
     this.#checked.clear();
-    await this.#show(this.#visible);
+    this.#show(this.#visible);
   }
 
   // The engine. Requests of a stage follow each other.
 
-  #ask(op, values = {}, transfer = []) {
+  #ask(op, values = {}) {
     if (!this.#open) {
       return Promise.resolve();
     }
-    return this.#queue(() => this.#engine.ask(op, {key: this.#step.id, ...values}, transfer));
+    return this.#queue(() => this.#engine.ask(op, {key: this.#step.id, ...values}));
   }
 
   #queue(task) {
@@ -296,7 +324,7 @@ export class Stage {
       split: true,
       divider: this.#divider,
       playing: this.#playing,
-      overlays: this.#step.overlays ?? [],
+      overlays: Object.keys(this.#overlays).filter((name) => this.#overlays[name]),
       magnifier: this.#magnify ? {x, y, factor: 8} : null,
     };
   }
@@ -306,46 +334,52 @@ export class Stage {
     this.#draw();
   }
 
-  async #show(visible) {
+  #show(visible) {
     this.#visible = visible;
     if (!visible) {
-      await this.#close();
+      this.#close();
     } else if (!this.#open) {
       this.#open = true;
-      const {scene, width, height} = this.#step;
-      this.#ask('open', {scene, width, height, wish: this.#wish()});
-      this.#draw();
-      this.#loop();
+      this.#told.textContent = 'opening …';
+      this.#openScene();
+      this.#loop(++this.#opened);
     }
   }
 
-  async #close() {
-    if (this.#open) {
-      this.#ask('close');
-      this.#open = false;
-      await this.#busy;
-    }
+  #close() {
+    this.#ask('close');
+    this.#open = false;
+  }
+
+  #openScene() {
+    const {scene, width, height} = this.#step;
+    const what = this.#dropped ?? {scene};
+    this.#trouble.textContent = '';
+    const done = this.#ask(this.#dropped ? 'load' : 'open',
+      {...what, width, height, wish: this.#wish()});
+    this.#draw();
+    return done;
   }
 
   /// Another scene in this place: files dropped by the reader.
   async load(files, main) {
-    this.#default = false;
-    this.#step.scene = null;
-    const {width, height} = this.#step;
-    this.#trouble.textContent = '';
-    await this.#ask('load', {files, main, width, height, wish: this.#wish()},
-      files.map(({bytes}) => bytes));
-    this.#draw();
+    const before = this.#dropped;
+    this.#dropped = {files, main};
+    if (!await this.#openScene()) {
+      this.#dropped = before; // which is still there
+    }
   }
+  #dropped = null;
 
-  async #loop() {
-    while (this.#open) {
+  async #loop(opened) {
+    const goesOn = () => this.#open && this.#opened === opened;
+    while (goesOn()) {
       const wait = kMinFrameMs - (performance.now() - this.#lastDraw);
       if (wait > 0) {
         await new Promise((resolve) => setTimeout(resolve, wait));
       }
       await new Promise(requestAnimationFrame);
-      if (this.#open && this.#playing) {
+      if (goesOn() && this.#playing) {
         await this.#draw();
       }
     }
@@ -359,7 +393,7 @@ export class Stage {
     }
     if (drawn.pixels) {
       const {width, height} = this.#canvas;
-      this.#canvas.getContext('2d').putImageData(
+      this.#canvas.getContext('2d', kInMemory).putImageData(
         new ImageData(new Uint8ClampedArray(drawn.pixels), width, height), 0, 0);
       ++this.frames;
     }
@@ -374,7 +408,7 @@ export class Stage {
     if (!story) {
       return;
     }
-    const plot = this.#plot.getContext('2d');
+    const plot = this.#plot.getContext('2d', kInMemory);
     const side = this.#plot.height;
     plot.putImageData(new ImageData(new Uint8ClampedArray(story.pixels), 2 * side, side), 0, 0);
     this.#story.hidden = false;
@@ -401,21 +435,20 @@ export class Stage {
     }
   }
 
-  /// Both panes' bytes against the native build's, where there are any for this frame. Where nothing
-  /// happens frames differ by their samples alone, and count on.
+  /// Both panes' bytes against the native build's, where there are any for this frame. Where
+  /// nothing happens frames differ by their samples alone, and count on.
   #check({frame, last_frame: lastFrame, left, right}) {
     const native = this.#expected?.[this.#step.scene];
-    if (!this.#default || !native) {
+    if (!native || this.#steered || this.#modes() !== this.#original) {
       return null;
     }
-    const index = left.frames - 1;
-    const counts = lastFrame === 0 || index === frame;
-    const pairs = [[left, native.left?.[index]], [right, native.right?.[index]]].filter(
-      ([pane, hash]) => pane && hash);
-    if (counts && pairs.length > 0) {
-      this.#checked.add(index);
-      if (pairs.some(([pane, hash]) => pane.hash !== hash)) {
-        this.#differs = index;
+    for (const [pane, hashes] of [[left, native.left], [right, native.right]]) {
+      const index = pane.frames - 1;
+      if (hashes?.[index] && (lastFrame === 0 || index === frame)) {
+        this.#checked.add(index);
+        if (hashes[index] !== pane.hash) {
+          this.#differs = index;
+        }
       }
     }
     this.#root.dataset.checked = this.#checked.size;
@@ -424,7 +457,10 @@ export class Stage {
       return element('strong', 'differs', `✗ frame ${this.#differs} has other bytes than natively`);
     }
     return this.#checked.size === 0 ? null
-      : element('strong', 'same', `✓ ${this.#checked.size} frames with the native build’s bytes`);
+      : element('strong', 'same', `✓ the native build’s bytes, ${this.#checked.size} of 24 frames`);
+  }
+  #modes() {
+    return JSON.stringify([this.#step.left, this.#step.right].map(({aa, taa}) => [aa, taa]));
   }
   #checked = new Set();
   #differs = null;
