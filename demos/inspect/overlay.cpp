@@ -177,7 +177,7 @@ void Overlay::drawTiles(int width, int height, ImageView<Rgb8> out) {
 /// From a point to where it was a frame ago, eight times as long as that is far.
 void Overlay::drawArrows(const GBuffer& gbuffer, ImageView<Rgb8> out) {
     constexpr int kStep = 24;
-    constexpr float kStretch = 8, kLongest = 1.5f * kStep;
+    constexpr float kStretch = 8, kLongest = kStep - 3;
     std::vector<Segment> arrows;
     for (int y = kStep / 2; y < out.height; y += kStep) {
         for (int x = kStep / 2; x < out.width; x += kStep) {

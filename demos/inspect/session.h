@@ -2,8 +2,7 @@
 // A scene that is looked at: camera, time, two panes, and what is drawn over them. One call makes
 // the next picture; windows, pages and scripts only turn input into calls of this class.
 //
-//   rig, time ──► recording (a growing CameraFile) ──► panes ──► divider, overlays, magnifier ──►
-//   image
+//   rig, time ──► recording (a growing CameraFile) ──► panes ──► overlays, magnifier ──► image
 //
 // Every drawn frame is an entry of the recording, and each pane is an ordinary FrameLoop over it:
 // what was seen can be saved and rendered again, byte for byte.

@@ -267,3 +267,27 @@ TEST_CASE("views: a past that was carried here is near to the picture", "[unit][
         CHECK(carried * 2 < kept);
     }
 }
+
+TEST_CASE(
+    "views: what comes in at the border was rejected as off-screen, and in the middle nothing was",
+    "[unit][views]") {
+    for (const std::string mode : {"still", "variance"}) {
+        Workers workers(2);
+        Session session(sceneNamed("checker"), testSettings(), workers);
+        session.pane(0) = {modeCalled(mode), View::rejection};
+        for (int i = 0; i < 10; ++i) {
+            session.steer().look(0.002, 0);
+            session.draw();
+        }
+        const auto cyan = [](Rgb8 c) { return c.g > c.r + 20 && c.b > c.r + 20; };
+        session.steer().look(0.002, 0);
+        const Drawn drawn = session.draw();
+        int border = 0, inside = 0;
+        for (int y = 0; y < kTestHeight; ++y) {
+            border += cyan(drawn.image.at(kTestWidth - 1, y)) ? 1 : 0;
+            inside += cyan(drawn.image.at(kTestWidth / 2, y)) ? 1 : 0;
+        }
+        CHECK(border > kTestHeight / 2);
+        CHECK(inside == 0);
+    }
+}
