@@ -41,7 +41,7 @@ Outcome<std::vector<const AtlasCase*>> parseCases(const std::string& text) {
 /// The bar, moved by whichever thread has finished something.
 class SharedProgress {
   public:
-    explicit SharedProgress(int total) : bar_(total) {}
+    SharedProgress(int total, bool quiet) : bar_(total, quiet) {}
     void advance() {
         const std::lock_guard lock(mutex_);
         bar_.show(++done_);
@@ -66,12 +66,12 @@ Outcome<void> firstFailure(const std::vector<Outcome<void>>& outcomes) {
 class AtlasRun {
   public:
     AtlasRun(Size resolution, std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
-             FileCache cache)
+             FileCache cache, bool quiet)
         : modes_(std::move(modes)),
           cache_(std::move(cache)),
           program_(programHash()),
           workers_(std::max(1, int(std::thread::hardware_concurrency()))),
-          progress_(std::max(1, stepsOf(cases, modes_))) {
+          progress_(std::max(1, stepsOf(cases, modes_)), quiet) {
         report_.width = resolution.width;
         report_.height = resolution.height;
         report_.cases = std::move(cases);
@@ -213,8 +213,8 @@ Outcome<void> writeAll(const AtlasOptions& options, const AtlasReport& report,
 }  // namespace
 
 Outcome<AtlasReport> measureAtlas(std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
-                                  Size resolution, FileCache cache) {
-    return AtlasRun(resolution, std::move(cases), std::move(modes), std::move(cache)).run();
+                                  Size resolution, FileCache cache, bool quiet) {
+    return AtlasRun(resolution, std::move(cases), std::move(modes), std::move(cache), quiet).run();
 }
 
 Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption) {
@@ -227,7 +227,7 @@ Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption) {
         .and_then([&] { return FileCache::open(options.cache, interruption); })
         .and_then([&](FileCache cache) {
             return measureAtlas(std::move(*cases), std::move(*modes), options.resolution,
-                                std::move(cache));
+                                std::move(cache), options.quiet);
         })
         .and_then([&](const AtlasReport& report) {
             return writeAll(options, report, interruption).and_then([&] {

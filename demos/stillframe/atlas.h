@@ -12,7 +12,7 @@ namespace still::command {
 /// Measures cases × ways of anti-aliasing on all cores, with a progress bar. References and
 /// finished cells are kept in the cache.
 Outcome<AtlasReport> measureAtlas(std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
-                                  Size resolution, FileCache cache);
+                                  Size resolution, FileCache cache, bool quiet = false);
 
 /// measureAtlas() of the named ones; writes index.html, atlas.json and atlas.csv into the output
 /// folder.

@@ -16,6 +16,7 @@ struct AtlasOptions {
     std::string cache;   ///< folder; empty: the user's
     std::string output;  ///< folder, made when it is not there
     bool json = false;
+    bool quiet = false;
 };
 
 struct ChartOptions {
@@ -27,6 +28,7 @@ struct ChartOptions {
     double orbit_deg = 1.0 / 3;  ///< of the moving segment, per frame
     int reference_samples = 256;
     bool json = false;
+    bool quiet = false;
 };
 
 }  // namespace still::command

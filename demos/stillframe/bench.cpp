@@ -26,6 +26,7 @@ struct Plan {
     std::optional<CameraFile> cameras;
     FrameSettings settings;
     int frames = 0;
+    bool quiet = false;
 };
 
 std::vector<std::string> defaultScenes() {
@@ -48,7 +49,7 @@ Outcome<void> readCameras(const BenchOptions& options, Plan& plan) {
         return {};
     }
     return fromResult(loadCameraFile(options.cameras)).map([&](CameraFile cameras) {
-        printWarnings(cameras.warnings);
+        printWarnings(cameras.warnings, options.quiet);
         plan.cameras = std::move(cameras);
     });
 }
@@ -56,6 +57,7 @@ Outcome<void> readCameras(const BenchOptions& options, Plan& plan) {
 Outcome<void> settle(const BenchOptions& options, Plan& plan) {
     plan.scenes = options.scenes.empty() ? defaultScenes() : options.scenes;
     plan.frames = options.frames;
+    plan.quiet = options.quiet;
     return parseThreads(options.threads)
         .map([&](std::vector<int> threads) { plan.threads = std::move(threads); })
         .and_then([&] { return parseSimd(options.simd); })
@@ -78,7 +80,7 @@ Outcome<std::optional<Scene>> openMoving(const Plan& plan, const std::string& na
                                          BenchMotion motion) {
     return openScene(name).map([&](Scene scene) {
         if (motion == kBenchMotions[0]) {
-            printWarnings(scene.warnings);
+            printWarnings(scene.warnings, plan.quiet);
         }
         frameForAspect(scene, plan.settings.width, plan.settings.height);
         if (plan.cameras) {
@@ -90,7 +92,7 @@ Outcome<std::optional<Scene>> openMoving(const Plan& plan, const std::string& na
 
 Outcome<BenchReport> measure(const Plan& plan) {
     BenchReport report;
-    const ProgressBar progress(int(plan.scenes.size() * std::size(kBenchMotions)));
+    const ProgressBar progress(int(plan.scenes.size() * std::size(kBenchMotions)), plan.quiet);
     int done = 0;
     for (const std::string& name : plan.scenes) {
         for (BenchMotion motion : kBenchMotions) {

@@ -18,6 +18,7 @@ struct BenchOptions {
     std::string cameras;
     std::string simd;  ///< empty: the best
     bool json = false;
+    bool quiet = false;
 };
 
 /// "1,2,4", each 1 … 256.

@@ -47,7 +47,7 @@ Outcome<void> openScenes(const ChartOptions& options, std::list<ChartScene>& sce
         if (!opened) {
             return tl::make_unexpected(opened.error());
         }
-        printWarnings(opened->warnings);
+        printWarnings(opened->warnings, options.quiet);
         frameForAspect(*opened, options.resolution.width, options.resolution.height);
         std::string name = plainName(text);
         const auto taken = [&](const ChartScene& scene) { return scene.name == name; };
@@ -95,7 +95,7 @@ Outcome<ChartReport> measure(const std::vector<ChartSegment>& segments, const Ch
     for (const ChartSegment& segment : segments) {
         steps += chartSteps(segment, threads.size());
     }
-    const ProgressBar progress(steps);
+    const ProgressBar progress(steps, options.quiet);
     int done = 0;
     ChartReport report{options.resolution.width, options.resolution.height, options.frames, {}};
     for (const ChartSegment& segment : segments) {

@@ -12,17 +12,19 @@ namespace still::command {
 namespace {
 
 /// What the programs of the laboratory share.
-void addLaboratoryOptions(CLI::App& command, std::string& output, std::string& cache, bool& json) {
+template <class Options>
+void addLaboratoryOptions(CLI::App& command, Options& o) {
     command
-        .add_option("-o,--output", output, "Folder for what is found, made when it is not there")
+        .add_option("-o,--output", o.output, "Folder for what is found, made when it is not there")
         ->required()
         ->type_name("DIR");
     command
-        .add_option("--cache", cache,
+        .add_option("--cache", o.cache,
                     "Folder for references, default $XDG_CACHE_HOME/stillframe\n"
                     "or ~/.cache/stillframe")
         ->type_name("DIR");
-    command.add_flag("--json", json, "Print the results as one JSON object");
+    command.add_flag("--json", o.json, "Print the results as one JSON object");
+    addQuiet(command, o.quiet);
 }
 
 }  // namespace
@@ -31,7 +33,7 @@ Subcommand declareAtlas(CLI::App& app) {
     const auto o = std::make_shared<AtlasOptions>();
     CLI::App* atlas = app.add_subcommand(
         "atlas", "Measure ways of anti-aliasing on scenes on which such ways fail");
-    addLaboratoryOptions(*atlas, o->output, o->cache, o->json);
+    addLaboratoryOptions(*atlas, *o);
     atlas->add_option("--scenes", o->scenes, "Cases with commas, default all that are quick")
         ->type_name("NAMES");
     atlas
@@ -51,7 +53,7 @@ Subcommand declareChart(CLI::App& app) {
     chart->add_option("SCENE", o->scenes, "FILE.obj, FILE.json or builtin:NAME; one or several")
         ->required()
         ->type_name("");
-    addLaboratoryOptions(*chart, o->output, o->cache, o->json);
+    addLaboratoryOptions(*chart, *o);
     addSize(*chart, o->resolution, "Default 640x360");
     chart->add_option("--frames", o->frames, "Of each segment, default 64")
         ->check(CLI::Range(4, 10000))
@@ -100,6 +102,7 @@ Subcommand declareBench(CLI::App& app) {
         ->type_name("FILE");
     bench->add_option("--simd", o->simd, "Instruction set, default the best")->type_name("TARGET");
     bench->add_flag("--json", o->json, "Print the results as one JSON object");
+    addQuiet(*bench, o->quiet);
     return {bench, [o](Interruption&) {
                 return still::command::bench(*o).map([] { return ExitCode::ok; });
             }};

@@ -1,8 +1,9 @@
-// stillframe render: its options.
+// stillframe render and info: their options.
 
 #include <memory>
 
 #include "demos/stillframe/cli.h"
+#include "demos/stillframe/info.h"
 #include "demos/stillframe/render.h"
 #include "demos/stillframe/report.h"
 
@@ -78,7 +79,7 @@ void addTimeOptions(CLI::App& render, RenderOptions& o) {
         ->type_name("N");
     render.add_option("--cameras", o.cameras, "JSON with a view and a projection for each frame")
         ->type_name("FILE");
-    render.add_option("--view", o.view, "One of the scene's views")->type_name("NAME");
+    render.add_option("--view", o.view, "One of the scene's views")->type_name("VIEW");
     render
         .add_option("--orbit", o.orbit_deg,
                     "The camera circles its target by so much over the frames")
@@ -163,6 +164,21 @@ Subcommand declareRender(CLI::App& app) {
     render->footer("Settings of --taa:\n" + taaSettingsLines());
     return {render,
             [o](Interruption& interruption) { return still::command::render(*o, interruption); }};
+}
+
+Subcommand declareInfo(CLI::App& app) {
+    const auto o = std::make_shared<InfoOptions>();
+    CLI::App* info =
+        app.add_subcommand("info", "Tell what a scene holds, and which code it makes run");
+    info->add_option("SCENE", o->scene, "FILE.obj, FILE.json, builtin:NAME or -")
+        ->required()
+        ->type_name("");
+    info->add_flag("--no-cache", o->no_cache, "Read OBJ files anew, see render");
+    info->add_flag("--json", o->json, "As one JSON object");
+    addQuiet(*info, o->quiet);
+    return {info, [o](Interruption&) {
+                return still::command::info(*o).map([] { return ExitCode::ok; });
+            }};
 }
 
 }  // namespace still::command

@@ -142,9 +142,7 @@ Outcome<void> readCameras(Job& job) {
         return {};
     }
     return store(fromResult(loadCameraFile(job.options.cameras)), job.cameras).map([&] {
-        if (!job.options.quiet) {
-            printWarnings(job.cameras.warnings);
-        }
+        printWarnings(job.cameras.warnings, job.options.quiet);
         job.settings.camera.file = &job.cameras;
     });
 }
@@ -152,11 +150,7 @@ Outcome<void> readCameras(Job& job) {
 Outcome<void> readFiles(Job& job) {
     const auto cache = job.options.no_cache ? std::filesystem::path() : usersCacheFolder();
     return store(openScene(job.scene_name, cache), job.scene)
-        .map([&] {
-            if (!job.options.quiet) {
-                printWarnings(job.scene.warnings);
-            }
-        })
+        .map([&] { printWarnings(job.scene.warnings, job.options.quiet); })
         .and_then([&] { return readCameras(job); });
 }
 

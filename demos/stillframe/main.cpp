@@ -25,8 +25,9 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(kExitCodes);
     std::vector<Subcommand> subcommands{
-        declareRender(app), declareCompare(app), declareAtlas(app), declareChart(app),
-        declareBench(app),  declarePresets(app), declareGolden(app)};
+        declareRender(app), declareCompare(app), declareAtlas(app),
+        declareChart(app),  declareBench(app),   declarePresets(app),
+        declareGolden(app), declareInfo(app),    declareCompletion(app)};
 #if STILL_VIEWER
     subcommands.push_back(declareView(app));
 #endif

@@ -57,7 +57,10 @@ Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& c
     });
 }
 
-void printWarnings(const std::vector<std::string>& warnings) {
+void printWarnings(const std::vector<std::string>& warnings, bool quiet) {
+    if (quiet) {
+        return;
+    }
     for (const std::string& warning : warnings) {
         std::fprintf(stderr, "stillframe: warning: %s\n", warning.c_str());
     }

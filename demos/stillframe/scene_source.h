@@ -18,7 +18,7 @@ Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& c
 /// What {model} stands for: "courtyard" of builtin:courtyard, "a" of dir/a.obj, "stdin" of -.
 std::string modelName(const std::string& scene);
 
-/// Each on a line of standard error.
-void printWarnings(const std::vector<std::string>& warnings);
+/// Each on a line of standard error, unless quiet is asked for.
+void printWarnings(const std::vector<std::string>& warnings, bool quiet = false);
 
 }  // namespace still::command

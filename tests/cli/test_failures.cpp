@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/image_file.h"
 #include "tests/cli/shell.h"
 #include "tests/support/data_path.h"
 
@@ -204,18 +205,58 @@ TEST_CASE("command: a signal ends the program and takes its unfinished files awa
     }
     const bool video = shell(folder.path(), "command -v ffmpeg").code == 0;
     for (const auto& [name, number] : {std::pair{"INT", 2}, {"TERM", 15}, {"HUP", 1}}) {
-        for (const char* file : {"x.gif", "x.mp4"}) {
+        for (const char* file : {"x.gif", "x.mp4", "x.apng", "x.y4m"}) {
             if (!video && std::string(file) == "x.mp4") {
                 continue;
             }
-            const Ran ran =
-                shell(folder.path(),
-                      std::string("timeout --preserve-status -s ") + name +
-                          " 1 " STILL_PROGRAM " render builtin:cubes --frames 1000000 -o " + file);
+            const Ran ran = shell(
+                folder.path(),
+                std::string("timeout --preserve-status -s ") + name +
+                    " 0.5 " STILL_PROGRAM " render builtin:cubes --frames 1000000 -o " + file);
             CHECK(ran.code == 128 + number);
             CHECK(filesIn(folder.path()).empty());
         }
     }
+}
+
+TEST_CASE("command: a signal leaves only whole pictures of a sequence", "[cli]") {
+    const TempFolder folder;
+    if (shell(folder.path(), "command -v timeout").code != 0) {
+        WARN("no timeout program here: skipped");
+        return;
+    }
+    const Ran ran =
+        shell(folder.path(), "timeout --preserve-status -s INT 0.7 " STILL_PROGRAM
+                             " render builtin:cubes --resolution 400x300 --frames 100000 -o x.png");
+    CHECK(ran.code == 130);
+    const Names names = filesIn(folder.path());
+    CHECK_FALSE(names.empty());
+    for (const std::string& name : names) {
+        INFO(name);
+        CHECK(name.ends_with(".png"));
+        CHECK(readImageFile(folder.path() / name).has_value());
+        CHECK(contentsOf(folder.path() / name).ends_with(std::string("IEND\xAE\x42\x60\x82")));
+    }
+}
+
+TEST_CASE("command: --quiet keeps warnings to itself, not errors", "[cli]") {
+    const TempFolder folder;
+    folder.write("t.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (const char* command : {"render t.obj --hash --resolution 8x8", "info t.obj",
+                                "bench t.obj --frames 4 --resolution 8x8"}) {
+        const std::string base = std::string("stillframe ") + command;
+        const Ran loud = shell(folder.path(), base);
+        INFO(command << "\n" << loud.err);
+        CHECK(loud.code == 0);
+        CHECK(loud.err.find("none.mtl") != std::string::npos);
+        const Ran quiet = shell(folder.path(), base + " --quiet");
+        CHECK(quiet.code == 0);
+        CHECK(quiet.err.empty());
+        CHECK_FALSE(quiet.out.empty());
+    }
+    checkFails(folder, "stillframe render none.obj --hash --quiet", 3);
+    checkFails(folder, "stillframe info none.obj --quiet", 3);
+    checkFails(folder, "stillframe completion fish", 2);
 }
 
 }  // namespace still::test
