@@ -4,7 +4,7 @@
 still_packages=(
     g++ cmake ninja-build
     libglm-dev libhwy-dev libtinyobjloader-dev libstb-dev libcli11-dev nlohmann-json3-dev
-    libexpected-dev libxxhash-dev libpng-dev libcairo2-dev fonts-dejavu-core catch2
+    libexpected-dev libxxhash-dev libpng-dev zlib1g-dev libcairo2-dev fonts-dejavu-core catch2
     libsdl2-dev libimgui-dev
     ffmpeg
 )

@@ -168,7 +168,7 @@ Subcommand declareCompletion(CLI::App& app) {
         ->required()
         ->check(CLI::IsMember({"bash"}))
         ->type_name("");
-    return {completion, [&app](Interruption&) {
+    return {completion, [&app, shell](Interruption&) {  // `shell` is what parsing fills in
                 return print(bashScript(app)).map([] { return ExitCode::ok; });
             }};
 }
