@@ -67,8 +67,9 @@ struct FrameLoop::State {
     /// What lies far ahead has moved by this much over the picture since the camera set off, 1/256
     /// pixel modulo 1 pixel.
     SampleOffset drift;
-    int resize_frame = 0;  ///< the first frame of the present size
-    bool resized = false;  ///< resize_frame is the one that is rendered next
+    int history_start = 0;  ///< historyStart() of the frame that is rendered
+    int resize_frame = 0;   ///< the first frame of the present size
+    bool resized = false;   ///< resize_frame is the one that is rendered next
 
     /// Runs `stage` and adds its time to `total_ms`.
     template <class Stage>
@@ -87,9 +88,12 @@ struct FrameLoop::State {
     bool gathers() const { return settings.policy.method == Method::gather; }
     bool sharpens() const { return temporal() && settings.policy.sharpness_q15 > 0; }
     int sampleCap() const { return int(jitterPeriod(settings.policy.jitter)); }
-    int ssaaSamples() const;
+    /// Samples that are averaged; 1 when there is nothing to average.
+    int ssaaSamples() const {
+        return settings.anti_aliasing == AntiAliasing::ssaa ? settings.ssaa_samples : 1;
+    }
     int historyStart(int frame) const;
-    uint32_t sampleOf(int frame, uint32_t subframe) const;
+    uint32_t sampleOf(int frame, int subframe) const;
     RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample,
                          const TaaFrame* evidence = nullptr, bool rest = false);
@@ -119,9 +123,10 @@ int FrameLoop::State::historyStart(int frame) const {
     return resize_frame <= frame ? std::max(cut, resize_frame) : cut;
 }
 
-uint32_t FrameLoop::State::sampleOf(int frame, uint32_t subframe) const {
-    const uint32_t since_start = uint32_t(frame - historyStart(frame));
-    return uint32_t(settings.first_sample) + since_start * uint32_t(settings.subframes) + subframe;
+uint32_t FrameLoop::State::sampleOf(int frame, int subframe) const {
+    const uint32_t since_start = uint32_t(frame - history_start);
+    return uint32_t(settings.first_sample) + since_start * uint32_t(settings.subframes) +
+           uint32_t(subframe);
 }
 
 /// Nothing is computed that the policy does not use.
@@ -261,9 +266,12 @@ void FrameLoop::State::resolve(const FrameState& frame, const TaaFrame& evidence
 /// historyStart).
 void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
     FrameState state = frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
-    state.cut |= frame == historyStart(frame);
+    // Sessions grow long: the way back to their last cut is not gone in every frame.
+    const bool goes_on = resolved_frame == frame - 1 && !state.cut && frame != resize_frame;
+    history_start = goes_on ? history_start : historyStart(frame);
+    state.cut |= frame == history_start;
     for (int i = 0; i < settings.subframes; ++i) {
-        const uint32_t sample = sampleOf(frame, uint32_t(i));
+        const uint32_t sample = sampleOf(frame, i);
         followCamera(state);
         const SampleOffset offset = offsetOf(state, sample);
         const TaaFrame evidence{.reset = state.cut,
@@ -298,11 +306,6 @@ void FrameLoop::State::resolveHistory(int frame) {
     if (sharpens() && !shown) {
         timed(times.taa_ms, [&] { sharpenResolved(); });
     }
-}
-
-/// Samples that are averaged; 1 when there is nothing to average.
-int FrameLoop::State::ssaaSamples() const {
-    return settings.anti_aliasing == AntiAliasing::ssaa ? settings.ssaa_samples : 1;
 }
 
 ColourTargets FrameLoop::State::resizeFiltered() {
@@ -340,6 +343,7 @@ void FrameLoop::State::renderAlone(int frame) {
         return;
     }
     const bool reference = settings.anti_aliasing == AntiAliasing::ssaa;
+    history_start = reference ? 0 : historyStart(frame);
     rasterizeSample(state, {}, reference ? 0 : sampleOf(frame, 0));
     if (settings.anti_aliasing == AntiAliasing::fxaa) {
         filterSample();
