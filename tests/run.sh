@@ -14,7 +14,7 @@ case "${1:-}" in
         ;;
 esac
 
-install_packages clang libbenchmark-dev libgtest-dev parallel "${still_peer_packages[@]}"
+install_packages clang libbenchmark-dev xvfb libgtest-dev parallel "${still_peer_packages[@]}"
 cmake --preset release -DSTILL_TESTS=ON >/dev/null
 cmake --build --preset release
 ctest --preset release --parallel "$(nproc)" "${select[@]}"

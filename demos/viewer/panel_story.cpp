@@ -33,8 +33,8 @@ void showStoryPanel(Desk& desk) {
         return;
     }
     ImGui::SetNextWindowPos({8, 60}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({470, 520}, ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Pixel", &desk.shown.story)) {
+    ImGui::SetNextWindowSize({desk.width >= 1280 ? 620.0f : 470.0f, 520}, ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("Pixel", &desk.shown.story, ImGuiWindowFlags_HorizontalScrollbar)) {
         const std::optional<inspect::PickedStory> story = desk.session.pickedStory();
         if (!story) {
             ImGui::TextUnformatted("Click a pixel.");

@@ -180,12 +180,12 @@ void showHelp(Desk& desk) {
     ImGui::SetNextWindowPos({float(desk.width) / 2, float(desk.height) / 2}, ImGuiCond_Always,
                             {0.5f, 0.5f});
     ImGui::SetNextWindowSize(
-        {std::min(830.0f, float(desk.width) - 16), std::min(520.0f, float(desk.height) - 16)});
+        {std::min(860.0f, float(desk.width) - 16), std::min(520.0f, float(desk.height) - 16)});
     if (ImGui::Begin("Keys and mouse", &desk.shown.help,
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
         const auto row = [](const std::string& key, std::string_view text) {
             ImGui::TextColored({1.0f, 0.85f, 0.4f, 1.0f}, "%s", key.c_str());
-            ImGui::SameLine(ImGui::GetColumnOffset() + 95);
+            ImGui::SameLine(95);
             ImGui::TextUnformatted(text.data(), text.data() + text.size());
         };
         for (const MouseHelp& help : mouseHelp()) {

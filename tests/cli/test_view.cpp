@@ -1,6 +1,9 @@
 // `stillframe view`, played by scripts, without a screen.
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <map>
+#include <optional>
 
 #include "engine/image_file.h"
 #include "tests/cli/shell.h"
@@ -9,11 +12,30 @@
 namespace still::test {
 namespace {
 
+namespace fs = std::filesystem;
+
 Ran view(const TempFolder& folder, const std::string& script, const std::string& more = "",
          const std::string& scene = "builtin:cubes") {
     folder.write("script.txt", script);
     return shell(folder.path(), "SDL_VIDEODRIVER=dummy stillframe view " + scene +
                                     " --script script.txt --resolution 200x120 " + more);
+}
+
+/// Runs a command with a screen of its own; nothing when there is no Xvfb here.
+std::optional<Ran> underXvfb(const TempFolder& folder, const std::string& command) {
+    if (shell(folder.path(), "command -v Xvfb").code != 0) {
+        WARN("skipped: Xvfb is not installed");
+        return std::nullopt;
+    }
+    folder.write("screen.sh",
+                 "mkfifo number\n"
+                 "Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3>number 2>/dev/null &\n"
+                 "read -r screen <number\n"
+                 "DISPLAY=:$screen SDL_VIDEODRIVER=x11 \"$@\"\n"
+                 "code=$?\n"
+                 "kill $!\n"
+                 "exit $code\n");
+    return shell(folder.path(), "sh screen.sh " + command);
 }
 
 }  // namespace
@@ -45,6 +67,59 @@ TEST_CASE("view: the same script gives the same bytes on other threads and drive
                 "--resolution 200x120 --threads 3")
               .code == 0);
     CHECK(contentsOf(one.path() / "a.png") == contentsOf(other.path() / "a.png"));
+}
+
+TEST_CASE("view: a window on a screen shows the bytes that are shown without one") {
+    const std::string script =
+        "wait 2\nmouse drag 60 60 90 50\nkey s\nkey p\nresize 240x140\nwait 3\n"
+        "screenshot a.png\n";
+    const TempFolder screen, none;
+    screen.write("script.txt", script);
+    const auto ran = underXvfb(screen,
+                               "stillframe view builtin:cubes --script script.txt "
+                               "--resolution 200x120");
+    if (!ran) {
+        return;
+    }
+    INFO(ran->err);
+    REQUIRE(ran->code == 0);
+    REQUIRE(view(none, script).code == 0);
+    CHECK(contentsOf(screen.path() / "a.png") == contentsOf(none.path() / "a.png"));
+}
+
+TEST_CASE("view: the tour shows everything there is, on a screen and without one", "[slow]") {
+    const fs::path data = fs::path(STILL_SOURCE_DIR) / "tests" / "data";
+    const TempFolder screen, none;
+    for (const TempFolder* folder : {&screen, &none}) {
+        for (const char* name : {"quad.obj", "quad.mtl"}) {
+            fs::copy_file(data / name, folder->path() / name);
+        }
+        folder->write("broken.obj", "v 1 2\nf 1 2 3\n");
+    }
+    const std::string command = "stillframe view builtin:courtyard --resolution 960x540 --script " +
+                                (data / "viewer_tour.txt").string();
+    const Ran without = shell(none.path(), "SDL_VIDEODRIVER=dummy " + command);
+    INFO(without.err);
+    REQUIRE(without.code == 0);
+    std::map<std::string, std::string> picture_of_bytes;
+    for (const std::string& name : filesIn(none.path())) {
+        if (name.ends_with(".png")) {  // every one shows something else
+            const auto [same, added] =
+                picture_of_bytes.emplace(contentsOf(none.path() / name), name);
+            INFO(name << " and " << same->second);
+            CHECK(added);
+        }
+    }
+    CHECK(picture_of_bytes.size() == 30);
+    const auto on_screen = underXvfb(screen, command);
+    if (on_screen) {
+        INFO(on_screen->err);
+        REQUIRE(on_screen->code == 0);
+        for (const auto& [bytes, name] : picture_of_bytes) {
+            INFO(name);
+            CHECK(contentsOf(screen.path() / name) == bytes);
+        }
+    }
 }
 
 TEST_CASE("view: a saved camera path is rendered again to the very picture that was seen") {
