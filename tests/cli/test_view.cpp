@@ -27,15 +27,16 @@ std::optional<Ran> underXvfb(const TempFolder& folder, const std::string& comman
         WARN("skipped: Xvfb is not installed");
         return std::nullopt;
     }
-    folder.write("screen.sh",
+    return shell(folder.path(),
                  "mkfifo number\n"
                  "Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3>number 2>/dev/null &\n"
                  "read -r screen <number\n"
-                 "DISPLAY=:$screen SDL_VIDEODRIVER=x11 \"$@\"\n"
-                 "code=$?\n"
-                 "kill $!\n"
-                 "exit $code\n");
-    return shell(folder.path(), "sh screen.sh " + command);
+                 "DISPLAY=:$screen SDL_VIDEODRIVER=x11 " +
+                     command +
+                     "\n"
+                     "code=$?\n"
+                     "kill $!\n"
+                     "exit $code\n");
 }
 
 }  // namespace
