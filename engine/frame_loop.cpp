@@ -262,8 +262,7 @@ void FrameLoop::State::resolve(const FrameState& frame, const TaaFrame& evidence
                        settings.policy, settings.simd, workers);
 }
 
-/// Renders one frame into the history, which must end with the frame before (or `frame` is a
-/// historyStart).
+/// Renders one frame into the history, which ends with the one before, or begins with it.
 void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
     FrameState state = frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
     // Sessions grow long: the way back to their last cut is not gone in every frame.
