@@ -18,14 +18,17 @@ namespace {
 
 constexpr double kMinAngleDeg = 0.001, kMaxAngleDeg = 170;
 
-/// Numbers between commas; nothing when a part is none, or not finite.
+/// As in scene files: beyond it, squares of single precision overflow.
+constexpr double kFarthest = 1e9;
+
+/// Numbers between commas; nothing when a part is none, or too large.
 std::optional<std::vector<double>> numbersIn(const std::string& text) {
     std::vector<double> numbers;
     for (const std::string& part : splitAtCommas(text)) {
         double value = 0;
         const char* end = part.data() + part.size();
         const auto [stop, error] = std::from_chars(part.data(), end, value);
-        if (error != std::errc() || stop != end || !std::isfinite(value)) {
+        if (error != std::errc() || stop != end || !(std::abs(value) <= kFarthest)) {
             return std::nullopt;
         }
         numbers.push_back(value);
@@ -110,8 +113,9 @@ double reach(const Bounds& box, const glm::dvec3& p) {
     return glm::length(farthest);
 }
 
-/// Everything of frame 0 lies between them, from wherever the camera circles its target.
-void chooseClipPlanes(Scene& scene) {
+/// Everything of frame 0 lies between them, from wherever the camera circles its target; but what
+/// is behind the eye does not if that is `within` the scene.
+void chooseClipPlanes(bool within, Scene& scene) {
     Camera& camera = scene.camera;
     const Bounds box = scene.bounds(0);
     const glm::dvec3 target = camera.target.keys[0].value;
@@ -123,7 +127,7 @@ void chooseClipPlanes(Scene& scene) {
     }
     const double radius = std::max(reach(box, target) * 1.01, 1e-6);
     if (camera.orthographic) {
-        camera.near = nearest - radius;
+        camera.near = within ? std::max(nearest - radius, 0.0) : nearest - radius;
         camera.far = farthest + radius;
         return;
     }
@@ -180,7 +184,7 @@ Outcome<void> circle(const CameraOptions& options, Camera& camera) {
 Outcome<glm::dvec3> parsePoint(const std::string& text) {
     const auto numbers = numbersIn(text);
     if (!numbers || numbers->size() != 3) {
-        return usageError(text + ": expected three numbers, X,Y,Z");
+        return usageError(text + ": expected three numbers within 1e9, X,Y,Z");
     }
     return glm::dvec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
@@ -190,7 +194,7 @@ Outcome<glm::dvec3> parseDirection(const std::string& text) {
         return *axis;
     }
     const auto point = parsePoint(text);
-    if (!point || !(glm::length(*point) > 1e-100) || !std::isfinite(glm::length(*point))) {
+    if (!point || !(glm::length(*point) > 1e-100)) {
         return usageError(text + ": expected an axis as +Z, or three numbers X,Y,Z that are not 0");
     }
     return *point;
@@ -233,8 +237,9 @@ Outcome<void> applyCamera(const CameraOptions& options, int view, int width, int
     for (auto& key : camera.fov_y_deg.keys) {
         key.value = options.zoom == 1 ? key.value : zoomedAngle(key.value, options.zoom);
     }
+    const bool within = !scene.automatic_camera || options.position;
     scene.automatic_camera = false;
-    return circle(options, camera).map([&] { chooseClipPlanes(scene); });
+    return circle(options, camera).map([&] { chooseClipPlanes(within, scene); });
 }
 
 }  // namespace still::command

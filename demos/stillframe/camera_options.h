@@ -25,7 +25,7 @@ struct CameraOptions {
     }
 };
 
-/// "X,Y,Z", finite numbers.
+/// "X,Y,Z", each within ±1e9.
 Outcome<glm::dvec3> parsePoint(const std::string& text);
 /// The same, not 0,0,0; or +X, -X, x … for an axis.
 Outcome<glm::dvec3> parseDirection(const std::string& text);

@@ -105,6 +105,7 @@ TEST_CASE("command: what cannot be meant is refused with code 2", "[cli]") {
                                   "-o x.png --up +W",
                                   "-o x.png --up nan,0,1",
                                   "-o x.png --camera-position 1,2",
+                                  "-o x.png --camera-position 1e10,0,0",
                                   "-o x.png --camera-position 1,2,3,",
                                   "-o x.png --camera-position 1,2,3 --camera-focal-point 1,2,3",
                                   "-o x.png --camera-view-angle 0",

@@ -133,6 +133,32 @@ TEST_CASE("render: a zoom by 2 shows twice the size, orthographic or not", "[cli
     }
 }
 
+TEST_CASE("render: an orthographic eye within a scene does not see what is behind it", "[cli]") {
+    const TempFolder folder;
+    // A red wall behind the eye, a green one before it.
+    folder.write("m.mtl", "newmtl r\nKd 1 0 0\nnewmtl g\nKd 0 1 0\n");
+    folder.write("w.obj",
+                 "mtllib m.mtl\nv -9 -9 5\nv 9 -9 5\nv 9 9 5\nv -9 9 5\nv -9 -9 -5\nv 9 -9 -5\n"
+                 "v 9 9 -5\nv -9 9 -5\nusemtl r\nf 1 2 3 4\nusemtl g\nf 5 6 7 8\n");
+    const std::string base = "w.obj --aa none -o w.png --camera-orthographic ";
+    render(folder, base + "--camera-position 0,0,1 --camera-focal-point 0,0,-5" + kSmall);
+    CHECK(picture(folder, "w.png").at(32, 18).g > 0);
+    CHECK(picture(folder, "w.png").at(32, 18).r == 0);
+    // An automatic camera stands outside, wherever a narrow angle puts its eye.
+    render(folder, base + "--camera-view-angle 120" + kSmall);
+    const Image<Rgb8> all = picture(folder, "w.png");
+    int red = 0, green = 0;
+    for (int y = 0; y < 36; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            red += all.at(x, y).r > 0 ? 1 : 0;
+            green += all.at(x, y).g > 0 ? 1 : 0;
+        }
+    }
+    INFO(red << " red, " << green << " green");
+    CHECK(red > 2 * green);  // the nearer one hides much of the other
+    CHECK(green > 0);
+}
+
 TEST_CASE("render: azimuth and orbit by the same angle show the same", "[cli]") {
     const TempFolder folder;
     folder.write("t.obj", kTetrahedron);
