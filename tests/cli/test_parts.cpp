@@ -32,13 +32,14 @@ std::vector<std::string> linesOf(const std::string& text) {
     return lines;
 }
 
-/// The line of the command's README that begins like this, with what the test needs instead.
+/// The line of the READMEs that begins like this, with what the test needs instead.
 std::string readmeCommand(const std::string& begin, const std::string& part,
                           const std::string& instead) {
-    const std::string readme =
-        contentsOf(std::filesystem::path(STILL_SOURCE_DIR) / "demos/stillframe/README.md");
-    for (std::string line : linesOf(readme)) {
+    const std::filesystem::path source(STILL_SOURCE_DIR);
+    const std::string first_readme = contentsOf(source / "README.md");
+    for (std::string line : linesOf(contentsOf(source / "demos/stillframe/README.md"))) {
         if (line.starts_with(begin)) {
+            REQUIRE(first_readme.find("\n" + line + "\n") != std::string::npos);
             REQUIRE(line.find(part) != std::string::npos);
             line.replace(line.find(part), part.size(), instead);
             return "PATH=\"$(dirname '" STILL_PROGRAM "'):$PATH\" " + line;
