@@ -90,7 +90,8 @@ void addTimeOptions(CLI::App& render, RenderOptions& o) {
                     "The frames that the orbit takes, default --frames; for parts of a run")
         ->check(CLI::Range(1, kMaxFrames))
         ->type_name("N");
-    render.add_flag("--turntable", o.turntable, "An orbit of 360 degrees");
+    render.add_flag("--turntable", o.turntable,
+                    "An orbit of 360 degrees, anti-aliased by ssaa:16 by default");
 }
 
 void addCameraOptions(CLI::App& render, CameraOptions& o) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace still::command {
 namespace {
@@ -101,16 +103,20 @@ constexpr int bayer(int x, int y) {
     return value;
 }
 
-int nearest(const GifPalette& palette, uint16_t cell) {
+Rgb8 centreOf(uint16_t cell) {
     constexpr int kStep = 1 << (8 - kBits);
-    const auto centre = [&](int axis) { return channel(cell, axis) * kStep + kStep / 2; };
+    const auto centre = [&](int axis) { return uint8_t(channel(cell, axis) * kStep + kStep / 2); };
+    return {centre(0), centre(1), centre(2)};
+}
+
+int nearest(const GifPalette& palette, Rgb8 colour) {
     int best = 0;
     int best_distance = 4 * 256 * 256;
     for (int i = 0; i < palette.count; ++i) {
         const Rgb8 c = palette.colours[size_t(i)];
-        const int dr = c.r - centre(0);
-        const int dg = c.g - centre(1);
-        const int db = c.b - centre(2);
+        const int dr = c.r - colour.r;
+        const int dg = c.g - colour.g;
+        const int db = c.b - colour.b;
         const int distance = dr * dr + dg * dg + db * db;
         if (distance < best_distance) {
             best_distance = distance;
@@ -119,6 +125,28 @@ int nearest(const GifPalette& palette, uint16_t cell) {
     }
     return best;
 }
+
+/// Colours that the palette has as they are, ascending, with their indices.
+class ExactColours {
+  public:
+    explicit ExactColours(const GifPalette& palette) {
+        for (int i = 0; i < palette.count; ++i) {
+            entries_.push_back({keyOf(palette.colours[size_t(i)]), i});
+        }
+        std::sort(entries_.begin(), entries_.end());
+    }
+    /// -1: has not.
+    int find(Rgb8 colour) const {
+        const uint32_t key = keyOf(colour);
+        const auto at = std::lower_bound(entries_.begin(), entries_.end(), std::pair(key, 0));
+        return at != entries_.end() && at->first == key ? at->second : -1;
+    }
+
+  private:
+    static uint32_t keyOf(Rgb8 c) { return uint32_t(c.r) << 16 | uint32_t(c.g) << 8 | c.b; }
+
+    std::vector<std::pair<uint32_t, int>> entries_;
+};
 
 }  // namespace
 
@@ -156,6 +184,8 @@ GifPalette choosePalette(ImageView<const Rgb8> image) {
 
 std::vector<uint8_t> applyPalette(ImageView<const Rgb8> image, const GifPalette& palette) {
     constexpr int16_t kUnknown = -1;
+    const ExactColours exact(palette);
+    const Histogram histogram = histogramOf(image);
     std::vector<int16_t> index_of(kCells, kUnknown);
     std::vector<uint8_t> indices(size_t(image.width) * size_t(image.height));
     size_t at = 0;
@@ -164,9 +194,15 @@ std::vector<uint8_t> applyPalette(ImageView<const Rgb8> image, const GifPalette&
             const int shift = (2 * bayer(x & 7, y & 7) - 63) * kDitherRange / 128;
             const auto dithered = [&](int value) { return std::clamp(value + shift, 0, 255); };
             const Rgb8 c = image.at(x, y);
+            if (const int index = exact.find(c); index >= 0) {
+                indices[at++] = uint8_t(index);
+                continue;
+            }
             const uint16_t cell = cellOf(dithered(c.r), dithered(c.g), dithered(c.b));
             if (index_of[cell] == kUnknown) {
-                index_of[cell] = int16_t(nearest(palette, cell));
+                const Sums& sums = histogram[cell];
+                const Rgb8 meant = sums.count > 0 ? sums.mean() : centreOf(cell);
+                index_of[cell] = int16_t(nearest(palette, meant));
             }
             indices[at++] = uint8_t(index_of[cell]);
         }

@@ -121,11 +121,16 @@ Outcome<void> settleOptions(Job& job) {
     }
     const int cores = std::max(1, int(std::thread::hardware_concurrency()));
     job.threads = options.threads > 0 ? options.threads : cores;
+    // Frames of a turntable lie so far apart that history is worth little.
+    const bool alone = options.turntable && options.taa.empty();
+    job.anti_aliasing = !options.anti_aliasing.empty() ? options.anti_aliasing
+                        : alone                        ? "ssaa:16"
+                                                       : "taa";
     AntiAliasingChoice choice;
     return store(sinkKind(options.output), job.sink)
         .and_then([&] { return store(parseDump(options.dump), job.dump); })
         .and_then([&] { return store(parseSimd(options.simd), settings.simd); })
-        .and_then([&] { return store(parseAntiAliasing(options.anti_aliasing), choice); })
+        .and_then([&] { return store(parseAntiAliasing(job.anti_aliasing), choice); })
         .and_then([&] { return parseTaaSettings(options.taa, choice.policy); })
         .map([&](const TaaPolicy& policy) {
             settings.anti_aliasing = choice.mode;

@@ -16,7 +16,8 @@ struct Job {
     Scene scene;
     CameraFile cameras;
     FrameSettings settings;
-    std::string preset;  ///< of TAA
+    std::string anti_aliasing;  ///< as it would be typed
+    std::string preset;         ///< of TAA
     std::vector<DumpPlane> dump;
     SinkKind sink = SinkKind::none;
     NamePattern name;  ///< of the pictures; with a number when there are several

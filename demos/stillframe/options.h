@@ -33,7 +33,7 @@ struct RenderOptions {
     std::optional<std::array<float, 3>> background;  ///< linear light; empty: the scene's
     bool no_background = false;
     double exposure_stops = 0;
-    std::string anti_aliasing = "taa";
+    std::string anti_aliasing;   ///< empty: taa, or ssaa:16 of a turntable
     std::string taa;             ///< comma-separated settings over the preset's
     std::optional<int> samples;  ///< of a finished picture; empty: 64
     std::string dump;            ///< comma-separated planes

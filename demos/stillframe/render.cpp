@@ -60,7 +60,7 @@ Run::Run(const Job& job, Sink& sink, Interruption& interruption)
     report_.height = job.settings.height;
     report_.threads = job.threads;
     report_.simd = job.settings.simd;
-    report_.anti_aliasing = job.options.anti_aliasing;
+    report_.anti_aliasing = job.anti_aliasing;
     report_.preset = job.preset;
     report_.taa = job.options.taa;
     report_.with_hashes = job.options.hash;

@@ -119,6 +119,31 @@ TEST_CASE("gif: a gradient keeps its mean colour and stays near each pixel", "[c
     CHECK(worst < 32);
 }
 
+TEST_CASE("gif: a flat background keeps its very colour, whatever is before it", "[cli]") {
+    for (const Rgb8 background : {Rgb8{0, 0, 0}, {32, 48, 64}, {255, 255, 255}, {7, 7, 8}}) {
+        Image<Rgb8> image = gradient(128, 128);
+        for (int y = 0; y < 128; ++y) {
+            for (int x = 0; x < 128; ++x) {
+                const bool before = x > 40 && x < 90 && y > 30 && y < 100;
+                image.at(x, y) = before ? image.at(x, y) : background;
+            }
+        }
+        // Dark browns like those that a black background was once mistaken for.
+        image.at(60, 60) = {10, 4, 3};
+        image.at(61, 60) = {12, 6, 2};
+        const ImageView<const Rgb8> view = std::as_const(image).view();
+        const GifPalette palette = choosePalette(view);
+        const std::vector<uint8_t> indices = applyPalette(view, palette);
+        int wrong = 0;
+        for (int y = 0; y < 30; ++y) {
+            for (int x = 0; x < 128; ++x) {
+                wrong += palette.colours[indices[size_t(y * 128 + x)]] != background ? 1 : 0;
+            }
+        }
+        CHECK(wrong == 0);
+    }
+}
+
 TEST_CASE("gif: delays add up to the wanted speed", "[cli]") {
     char* bytes = nullptr;
     size_t size = 0;

@@ -180,6 +180,10 @@ TEST_CASE("render: a turntable has 60 frames and ends where it began", "[cli]") 
     const std::string json =
         render(folder, "builtin:triangle --turntable --json --aa none --resolution 8x8");
     CHECK(json.find("\"frames\": 60") != std::string::npos);
+    CHECK(json.find("\"anti_aliasing\": \"none\"") != std::string::npos);
+    const std::string short_one =
+        render(folder, "builtin:triangle --turntable --frames 2 --json --resolution 8x8");
+    CHECK(short_one.find("\"anti_aliasing\": \"ssaa:16\"") != std::string::npos);
     render(folder, "builtin:triangle --turntable --frames 4 --aa none -o t.png" + kSmall);
     render(folder,
            "builtin:triangle --orbit 90 --orbit-frames 1 --start 4 --aa none -o e.png" + kSmall);
