@@ -161,6 +161,9 @@ Outcome<void> Run::step(const ScriptStep& step) {
         SDL_Event real;
         while (SDL_PollEvent(&real) != 0) {  // the window is kept alive; people are not heard
             quit_ |= real.type == SDL_QUIT;
+            if (real.type == SDL_DROPFILE) {
+                SDL_free(real.drop.file);
+            }
         }
         for (SDL_Event& event : events) {
             handle(event);
