@@ -7,9 +7,9 @@
 #include <cassert>
 
 #include "engine/internal/camera_drift.h"
-#include "engine/internal/sample_sums.h"
 #include "engine/jitter.h"
 #include "postfx/laboratory.h"
+#include "postfx/sample_sums.h"
 #include "postfx/sharpen.h"
 #include "postfx/spatial.h"
 

@@ -6,6 +6,7 @@
 
 #include "demos/inspect/probe.h"
 #include "postfx/encode.h"
+#include "postfx/sample_sums.h"
 #include "rasterizer/image.h"
 
 namespace still::inspect {
@@ -46,8 +47,8 @@ class Reference {
     ReferenceOrder order_{1};
     int frame_ = 0, width_ = 0, height_ = 0;
     int wanted_ = 0, done_ = 0;
-    Image<uint32_t> red_, green_, blue_;  ///< sums: 65536 · 65535 fits
-    Image<uint16_t> mean_red_, mean_green_, mean_blue_;
+    ColourSums sums_;
+    Image<uint16_t> red_, green_, blue_;  ///< their mean
     Image<Rgb8> output_;
 };
 

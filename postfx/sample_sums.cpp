@@ -1,4 +1,4 @@
-#include "engine/internal/sample_sums.h"
+#include "postfx/sample_sums.h"
 
 namespace still {
 namespace {
