@@ -53,6 +53,15 @@ CLI::Option* addParsed(CLI::App& command, const std::string& name, Target& targe
         text);
 }
 
+/// What changes no byte.
+inline void addMachineOptions(CLI::App& command, int& threads, std::string& simd) {
+    command.add_option("--threads", threads, "Default: all cores. The bytes are the same")
+        ->check(CLI::Range(1, 256))
+        ->type_name("N");
+    command.add_option("--simd", simd, "Instruction set, default the best. The bytes are the same")
+        ->type_name("TARGET");
+}
+
 /// CLI::Range lets NaN pass.
 inline CLI::Validator between(double low, double high) {
     const auto check = [low, high](std::string& text) {

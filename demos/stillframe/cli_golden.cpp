@@ -14,12 +14,7 @@ void addGoldenOptions(CLI::App& command, GoldenOptions& o) {
     command
         .add_option("--shard", o.shard, "Part I of N of the cases, I from 1: for several machines")
         ->type_name("I/N");
-    command.add_option("--threads", o.threads, "Default: all cores. The bytes are the same")
-        ->check(CLI::Range(1, 256))
-        ->type_name("N");
-    command
-        .add_option("--simd", o.simd, "Instruction set, default the best. The bytes are the same")
-        ->type_name("TARGET");
+    addMachineOptions(command, o.threads, o.simd);
     command.add_flag("--json", o.json, "Print the result as one JSON object");
 }
 

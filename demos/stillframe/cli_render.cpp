@@ -125,13 +125,8 @@ void addCameraOptions(CLI::App& render, CameraOptions& o) {
                     "Parallel projection, the focal point as large as before");
 }
 
-void addMachineOptions(CLI::App& render, RenderOptions& o) {
-    render.add_option("--threads", o.threads, "Default: all cores. The bytes are the same")
-        ->check(CLI::Range(1, 256))
-        ->type_name("N");
-    render
-        .add_option("--simd", o.simd, "Instruction set, default the best. The bytes are the same")
-        ->type_name("TARGET");
+void addRunOptions(CLI::App& render, RenderOptions& o) {
+    addMachineOptions(render, o.threads, o.simd);
     render
         .add_option("--shading", o.shading, "deferred (default) or forward. The bytes are the same")
         ->check(CLI::IsMember({"deferred", "forward"}))
@@ -161,7 +156,7 @@ Subcommand declareRender(CLI::App& app) {
     addPictureOptions(*render, *o);
     addTimeOptions(*render, *o);
     addCameraOptions(*render, o->camera);
-    addMachineOptions(*render, *o);
+    addRunOptions(*render, *o);
     render->footer("Settings of --taa:\n" + taaSettingsLines());
     return {render,
             [o](Interruption& interruption) { return still::command::render(*o, interruption); }};

@@ -5,32 +5,13 @@
 
 #include "engine/frame_loop.h"
 #include "engine/hash.h"
-#include "engine/shapes.h"
+#include "tests/support/box_on_floor.h"
 
 using namespace still;
 
 namespace {
 
 constexpr int kWidth = 97, kHeight = 70;
-
-/// A floor and a box that slides over it from `first` to `last`.
-Scene boxOnFloor(int first, int last) {
-    Scene scene;
-    scene.meshes = {shapes::plane(8, 8, 4, 4, 1), shapes::box(0.5f, 0.5f, 0.5f)};
-    scene.mesh_names = {"floor", "box"};
-    scene.materials.resize(2);
-    scene.materials[1].diffuse = {0.9f, 0.2f, 0.1f};
-    scene.meshes[1].parts[0].material = 1;
-    scene.objects.resize(2);
-    scene.objects[1].mesh = 1;
-    scene.objects[1].tracks.translation.keys = {{double(first), {-1, 0.5, 0}},
-                                                {double(last), {1, 0.5, 0}}};
-    scene.camera.eye.keys = {{0, {1, 3, 5}}};
-    scene.camera.target.keys = {{0, {0, 0.5, 0}}};
-    scene.lights.sun = {{0.0f, -0.6f, -0.8f}, {0.7f, 0.7f, 0.7f}};
-    scene.background = {0.1f, 0.2f, 0.4f};
-    return scene;
-}
 
 FrameSettings settingsOf(const char* preset) {
     FrameSettings settings;
@@ -59,7 +40,7 @@ std::string firstUntrue(const FrameLoop& loop, const FrameResult& frame) {
 
 TEST_CASE("frame_loop: stories have the frame's colours, also of sub-frames, jumps and new sizes",
           "[unit][frame_loop]") {
-    const Scene scene = boxOnFloor(0, 30);
+    const Scene scene = boxOnFloor(1, 30);
     Workers workers(1, Schedule::serial);
     for (const char* preset : {"still", "tiny", "variance", "fsr-like"}) {
         FrameSettings settings = settingsOf(preset);
@@ -112,7 +93,7 @@ TEST_CASE("frame_loop: a finished picture tells that it is finished", "[unit][fr
 }
 
 TEST_CASE("frame_loop: asking for stories changes no frame", "[unit][frame_loop]") {
-    const Scene scene = boxOnFloor(0, 12);
+    const Scene scene = boxOnFloor(1, 12);
     Workers workers(2);
     for (const char* preset : {"still", "godot"}) {
         FrameLoop asked(scene, settingsOf(preset), workers);
@@ -135,7 +116,7 @@ TEST_CASE("frame_loop: asking for stories changes no frame", "[unit][frame_loop]
 
 TEST_CASE("frame_loop: without TAA there is no story, and all tiles are drawn",
           "[unit][frame_loop]") {
-    const Scene scene = boxOnFloor(0, 12);
+    const Scene scene = boxOnFloor(1, 12);
     Workers workers(1, Schedule::serial);
     FrameSettings settings = settingsOf("still");
     settings.anti_aliasing = AntiAliasing::none;
