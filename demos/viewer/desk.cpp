@@ -116,6 +116,8 @@ void Desk::performView(Action action) {
             return session.lookFrom({0, 1, 0});
         case Action::isometric:
             return session.lookFrom({1, 1, 1});
+        case Action::orthographic:
+            return session.steer().setOrthographic(!session.rig().pose().orthographic);
         case Action::next_named_view:
         case Action::previous_named_view:
             return showView(action == Action::next_named_view ? 1 : -1);

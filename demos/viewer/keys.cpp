@@ -55,6 +55,7 @@ constexpr std::array kBindings{
     KeyBinding{plain(SDLK_3), Action::right, "from the right"},
     KeyBinding{plain(SDLK_7), Action::top, "from above"},
     KeyBinding{plain(SDLK_9), Action::isometric, "from a corner"},
+    KeyBinding{plain(SDLK_5), Action::orthographic, "parallel projection or perspective"},
     KeyBinding{plain(SDLK_PAGEDOWN), Action::next_named_view, "next view of the scene"},
     KeyBinding{plain(SDLK_PAGEUP), Action::previous_named_view, "previous one"},
     KeyBinding{plain(SDLK_d), Action::keep_fps, "dynamic resolution: keep the frame rate"},

@@ -41,6 +41,7 @@ enum class Action {
     right,
     top,
     isometric,
+    orthographic,
     next_named_view,
     previous_named_view,
     keep_fps,

@@ -173,6 +173,30 @@ void showTimesPanel(Desk& desk) {
     ImGui::End();
 }
 
+/// Down the left column, then down the right one.
+void showKeys(int columns) {
+    const std::span<const KeyBinding> bindings = keyBindings();
+    const size_t rows = (bindings.size() + size_t(columns) - 1) / size_t(columns);
+    if (!ImGui::BeginTable("keys", 2 * columns)) {
+        return;
+    }
+    for (int column = 0; column < columns; ++column) {
+        ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, 75);
+        ImGui::TableSetupColumn("text");
+    }
+    for (size_t row = 0; row < rows; ++row) {
+        for (size_t i = row; i < bindings.size(); i += rows) {
+            ImGui::TableNextColumn();
+            ImGui::TextColored({1.0f, 0.85f, 0.4f, 1.0f}, "%s", nameOf(bindings[i].key).c_str());
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(bindings[i].text.data(),
+                                   bindings[i].text.data() + bindings[i].text.size());
+        }
+        ImGui::TableNextRow();
+    }
+    ImGui::EndTable();
+}
+
 void showHelp(Desk& desk) {
     if (!desk.shown.help) {
         return;
@@ -183,29 +207,13 @@ void showHelp(Desk& desk) {
         {std::min(860.0f, float(desk.width) - 16), std::min(520.0f, float(desk.height) - 16)});
     if (ImGui::Begin("Keys and mouse", &desk.shown.help,
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
-        const auto row = [](const std::string& key, std::string_view text) {
-            ImGui::TextColored({1.0f, 0.85f, 0.4f, 1.0f}, "%s", key.c_str());
-            ImGui::SameLine(95);
-            ImGui::TextUnformatted(text.data(), text.data() + text.size());
-        };
         for (const MouseHelp& help : mouseHelp()) {
             ImGui::TextColored({1.0f, 0.85f, 0.4f, 1.0f}, "%s", std::string(help.gesture).c_str());
             ImGui::SameLine(170);
             ImGui::TextUnformatted(help.text.data(), help.text.data() + help.text.size());
         }
         ImGui::Separator();
-        // Down the left column, then down the right one.
-        const int columns = desk.width >= 840 ? 2 : 1;
-        const size_t count = keyBindings().size();
-        const size_t rows = (count + size_t(columns) - 1) / size_t(columns);
-        ImGui::Columns(columns, "keys", false);
-        for (size_t i = 0; i < count; ++i) {
-            if (i == rows) {
-                ImGui::NextColumn();
-            }
-            row(nameOf(keyBindings()[i].key), keyBindings()[i].text);
-        }
-        ImGui::Columns(1);
+        showKeys(desk.width >= 840 ? 2 : 1);
     }
     ImGui::End();
 }

@@ -115,6 +115,34 @@ TEST_CASE("viewer: keys do what the help says") {
     CHECK_FALSE(played.viewer().takeRequests().quit);
 }
 
+TEST_CASE("viewer: the help says in both columns what a key does") {
+    Played played("builtin:triangle", 960, 540);
+    played.play("wait 1\nkey h\nwait 2");
+    const Image<Rgb8> picture = played.viewer().screenshot(true);
+    // Keys are yellow, what they do is white.
+    const auto whiteIn = [&](int x0, int x1) {
+        int count = 0;
+        for (int y = 165; y < 480; ++y) {
+            for (int x = x0; x < x1; ++x) {
+                const Rgb8 pixel = picture.at(x, y);
+                count += pixel.r > 240 && pixel.g > 240 && pixel.b > 240 ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    CHECK(whiteIn(140, 470) > 1000);
+    CHECK(whiteIn(565, 890) > 1000);
+}
+
+TEST_CASE("viewer: 5 changes to a parallel projection and back") {
+    Played played("builtin:cubes");
+    played.play("wait 2\nkey 5\nwait 2");
+    const inspect::Rig parallel = played.session().rig();
+    CHECK(parallel.pose().orthographic);
+    played.play("key 5\nwait 2");
+    CHECK_FALSE(played.session().rig().pose().orthographic);
+}
+
 TEST_CASE("viewer: the hand orbits, pans, flies and picks; Enter brings the camera back") {
     Played played("builtin:cubes");
     played.play("wait 1");
