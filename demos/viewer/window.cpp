@@ -30,6 +30,13 @@ command::Outcome<Window> Window::open(const std::string& title, command::Size si
     }
     Window window;
     window.video_ = std::make_unique<Video>();
+    // SDL falls back to a window that nobody sees, by itself.
+    if (SDL_GetHint(SDL_HINT_VIDEODRIVER) == nullptr &&
+        SDL_GetCurrentVideoDriver() == std::string("offscreen")) {
+        return command::fileError(
+            "cannot open a window: there is no screen; SDL_VIDEODRIVER=dummy does without, for "
+            "--script");
+    }
     window.window_.reset(SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED,
                                           SDL_WINDOWPOS_UNDEFINED, size.width, size.height,
                                           SDL_WINDOW_RESIZABLE));

@@ -57,6 +57,16 @@ TEST_CASE("view: a script takes screenshots of the window, in its size") {
     CHECK((two->width() == 160 && two->height() == 100));
 }
 
+TEST_CASE("view: without a screen there is an error, not a window that nobody sees") {
+    const TempFolder folder;
+    folder.write("script.txt", "quit\n");
+    const Ran ran = shell(folder.path(),
+                          "unset DISPLAY WAYLAND_DISPLAY SDL_VIDEODRIVER\n"
+                          "stillframe view builtin:cubes --script script.txt");
+    CHECK(ran.code == 3);
+    CHECK(ran.err.find("stillframe: cannot open a window: ") != std::string::npos);
+}
+
 TEST_CASE("view: the same script gives the same bytes on other threads and drivers") {
     const std::string script =
         "mouse drag 60 60 90 50\nkey space\nkey p\nwait 5\nscreenshot a.png\n";
