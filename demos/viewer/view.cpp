@@ -18,7 +18,7 @@
 #include "demos/viewer/window.h"
 #include "engine/anti_aliasing.h"
 #include "engine/camera.h"
-#include "engine/internal/obj_text.h"
+#include "engine/read_file.h"
 
 namespace still::viewer {
 namespace {

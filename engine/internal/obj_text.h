@@ -1,23 +1,16 @@
 #pragma once
-// Text files of the OBJ family: reading, line ends, numbers. Numbers are parsed by + × ÷ alone,
+// Text files of the OBJ family: line ends, numbers. Numbers are parsed by + × ÷ alone,
 // because the C library's pow differs in the last bit from machine to machine.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "engine/result.h"
+#include "engine/read_file.h"
 
 namespace still {
 
-/// The whole file; an Error "NAME: …" when it is missing, a folder, or cannot be read.
-Result<std::string> readFile(const std::filesystem::path& file);
-
-/// The path as it is shown in messages: control characters become '?', so that it is one line.
-std::string shownPath(const std::filesystem::path& file);
-
-/// The same for any text that comes out of a file, cut after 80 bytes.
+/// shownPath() for any text that comes out of a file, cut after 80 bytes.
 std::string shownText(std::string_view text);
 
 /// Makes every line end with '\n' (from "\r\n" and "\r"), drops a byte-order mark, and replaces a
