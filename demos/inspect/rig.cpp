@@ -150,10 +150,6 @@ void Rig::centre(const glm::dvec3& point) {
     }
 }
 
-void Rig::setFov(double fov_y_deg) {
-    pose_.fov_y_deg = std::clamp(fov_y_deg, 1.0, 170.0);
-}
-
 void Rig::setOrthographic(bool on) {
     pose_.orthographic = on;
 }

@@ -35,7 +35,6 @@ class Rig {
     void fly(double right, double up, double forward);
     /// The point that orbits circle from now on. The camera turns to it.
     void centre(const glm::dvec3& point);
-    void setFov(double fov_y_deg);  ///< 1 … 170
     /// What is seen at the target keeps its size.
     void setOrthographic(bool on);
 

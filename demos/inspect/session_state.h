@@ -57,7 +57,6 @@ struct Session::State {
     bool makePanes();
     void takeFrame();
     bool renderPanes();
-    bool refinePanes();
     bool refineReference();
     void paintView(Slot& slot);
     ImageView<const Rgb8> shownPicture(const Slot& slot) const;
