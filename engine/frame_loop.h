@@ -25,11 +25,18 @@ enum class AntiAliasing {
     ssaa,  ///< FrameSettings::ssaa_samples
 };
 
+/// What happens to light that is sampled (SampledLight), when a scene has any.
+enum class Denoise {
+    off,   ///< one sample a pixel as it is; anti-aliasing averages some
+    svgf,  ///< postfx/denoise.h
+};
+
 struct FrameSettings {
     int width = 1280, height = 720;
     AntiAliasing anti_aliasing = AntiAliasing::taa;
-    TaaPolicy policy{};     ///< used with AntiAliasing::taa; the preset `still`
-    int ssaa_samples = 64;  ///< 1 … 65536, used with AntiAliasing::ssaa
+    TaaPolicy policy{};               ///< used with AntiAliasing::taa; the preset `still`
+    int ssaa_samples = 64;            ///< 1 … 65536, used with AntiAliasing::ssaa
+    Denoise denoise = Denoise::svgf;  ///< not with AntiAliasing::ssaa, which needs none
     ToneMap tone_map = ToneMap::none;
     double exposure = 1;  ///< light is multiplied by it when it is encoded, before the tone map
     /// Linear light, instead of the scene's.
@@ -57,6 +64,7 @@ struct FrameSettings {
 /// Milliseconds spent on one frame (summed over sub-frames and ssaa samples).
 struct StageTimes {
     double transform_bin_ms = 0, raster_ms = 0, taa_ms = 0, output_ms = 0;
+    double light_ms = 0, denoise_ms = 0;  ///< of sampled light
     /// The first two by what their workers did; 0 without FrameSettings::ticks.
     double transform_ms = 0, bin_ms = 0, visibility_ms = 0, shade_ms = 0;
 };

@@ -112,6 +112,8 @@ struct TaaPolicy {
     Tone tone = Tone::linear;
 
     // Both
+    /// Output size by rendered size, per axis: 256 (native) … 768.
+    int ratio_fx8 = 256;
     int mip_bias_fx8 = 0;
     int sharpness_q15 = 0;  ///< of the sharpening after the resolve
 

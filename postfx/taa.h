@@ -35,6 +35,9 @@ struct TaaFrame {
     std::span<const uint64_t> turning_surfaces{};
     /// Where this frame's samples lie, from the pixels' centres, −128 … 127.
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
+    /// Of each pixel, for how many frames its surface has been lit as it is now, 255 = long enough;
+    /// older samples of it do not count, and 0 leaves this frame's. Empty: all are.
+    ImageView<const uint8_t> light_age{};
     /// False: the image of this frame is not asked for, and only what later ones need is made.
     bool looked_at = true;
     /// So many frames follow in which nothing moves or changes, and all but the last of them are

@@ -134,10 +134,57 @@ struct PointLight {
     std::array<float, 3> colour{};
 };
 
+/// A glowing ball. Falls off like a PointLight of this colour in its middle; casts soft shadows.
+struct SphereLight {
+    std::array<float, 3> position{};
+    float radius = 0.0f;  ///< > 0
+    std::array<float, 3> colour{};
+};
+
+/// A glowing rectangle centre ± edge_u / 2 ± edge_v / 2, which shines towards cross(edge_u,
+/// edge_v). From afar and straight ahead it lights like a PointLight of this colour; casts soft
+/// shadows.
+struct RectangleLight {
+    std::array<float, 3> centre{};
+    std::array<float, 3> edge_u{}, edge_v{};  ///< perpendicular, not 0
+    std::array<float, 3> colour{};
+};
+
+enum class SunShadow : uint8_t {
+    none,
+    mapped,  ///< from a shadow map, looked up at one random place a sample
+    traced,
+};
+
+/// How much of the ambient light reaches a place.
+enum class AmbientLight : uint8_t {
+    plain,             ///< all
+    screen_occlusion,  ///< without what the depth plane hides, at half resolution
+    traced_occlusion,  ///< without what lies within occlusion_distance
+    bounce,            ///< the sky's, and what the surfaces in its way reflect: one bounce
+};
+
+/// Light that needs a random sample a pixel and frame. By default there is none, and none is paid
+/// for. What is in here is left out of the G-buffer's colour.
+struct SampledLight {
+    SunShadow sun_shadow = SunShadow::none;
+    float sun_tangent = 0.0f;  ///< of half the angle that the sun's disc spans; 0 = sharp shadows
+    AmbientLight ambient = AmbientLight::plain;
+    float occlusion_distance = 0.0f;  ///< > 0 with AmbientLight::…_occlusion, world units
+    std::vector<SphereLight> spheres{};
+    std::vector<RectangleLight> rectangles{};
+
+    bool any() const {
+        return sun_shadow != SunShadow::none || ambient != AmbientLight::plain ||
+               !spheres.empty() || !rectangles.empty();
+    }
+};
+
 struct Lighting {
     std::array<float, 3> ambient{};
     DirectionalLight sun;
     std::vector<PointLight> points;
+    SampledLight sampled{};
 };
 
 /// Of each triangle of a mesh one bit, bit t % 32 of word t / 32: its winding agrees with its

@@ -16,6 +16,9 @@ void GBuffer::resize(int width, int height, PlaneSet wanted) {
     depth.resize(width, height);
     id.resize(width, height);
     normal.resize(wanted.normal ? width : 0, wanted.normal ? height : 0);
+    for (Image<uint16_t>* plane : {&albedo_red, &albedo_green, &albedo_blue}) {
+        plane->resize(wanted.albedo ? width : 0, wanted.albedo ? height : 0);
+    }
     motion.resize(wanted.motion ? width : 0, wanted.motion ? height : 0);
     depth_before.resize(wanted.motion ? width : 0, wanted.motion ? height : 0);
     tiles_x = (width + kTileSize - 1) / kTileSize;

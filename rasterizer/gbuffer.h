@@ -16,6 +16,7 @@ constexpr int kTileSize = 64;
 struct PlaneSet {
     bool normal = false;
     bool motion = false;  ///< motion and previous depth
+    bool albedo = false;  ///< what diffuse light is multiplied by
     friend bool operator==(const PlaneSet&, const PlaneSet&) = default;
 };
 
@@ -46,8 +47,9 @@ struct TileFacts {
 struct GBuffer {
     PlaneSet planes;
     Image<uint16_t> red, green, blue;  ///< linear light, 1.0 = 4096 (fx12), saturated
-    Image<uint32_t> depth;             ///< bits of the reversed-Z float, see logDepth16()
-    Image<uint16_t> id;                ///< kSurfaceMask, kMovedBit
+    Image<uint16_t> albedo_red, albedo_green, albedo_blue;  ///< fx12 too; 0 where nothing is
+    Image<uint32_t> depth;   ///< bits of the reversed-Z float, see logDepth16()
+    Image<uint16_t> id;      ///< kSurfaceMask, kMovedBit
     Image<uint32_t> normal;  ///< octahedral: low 16 bits x, high 16 bits y, snorm16; world
     Image<Motion> motion;
     Image<uint16_t> depth_before;  ///< logDepth16 the surface had in the previous frame (expected)
