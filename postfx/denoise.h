@@ -1,0 +1,73 @@
+#pragma once
+// Light of one random sample a pixel and frame in, clean light out: variance-guided filtering over
+// time and space. Flow, formats and sources: postfx/README.md, "Denoiser".
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "postfx/colour_targets.h"
+#include "postfx/taa.h"
+#include "rasterizer/gbuffer.h"
+#include "rasterizer/simd.h"
+#include "rasterizer/workers.h"
+
+namespace still {
+
+/// Light that falls onto the surfaces, before it is multiplied by their albedo; fx12, of the
+/// G-buffer's size, in two parts that are filtered apart.
+struct LightPlanes {
+    ColourPlanes direct;    ///< from lamps and sun
+    ColourPlanes indirect;  ///< ambient, or what other surfaces reflect
+};
+
+/// One sample in each block of kLightBlock² pixels of the *previous* frame: luminance (fx12) that
+/// it saw then, and luminance that the very same sample sees in this frame's scene. Equal where
+/// light did not change. Blocks row by row, ceil(width / kLightBlock) × ceil(height / kLightBlock);
+/// the right and bottom ones may be cut off by the picture's border.
+struct LightChange {
+    ImageView<const uint16_t> direct_before, direct_now;
+    ImageView<const uint16_t> indirect_before, indirect_now;
+};
+constexpr int kLightBlock = 3;
+
+/// What the frame loop knows and the pixels do not show.
+struct DenoiseFrame {
+    bool reset = false;  ///< first frame, camera cut: there is no history
+    /// Empty views: no light, object or material changed since the frame before, so that all light
+    /// is what it was; the camera may have moved.
+    LightChange change{};
+    /// Per tile, as the rasterizer was asked for it: 0 where G-buffer and light are an earlier
+    /// frame's, and what was handed out stays. Empty: all tiles are this frame's.
+    std::span<const uint8_t> wanted{};
+};
+
+/// Owns the history. run() is called once per frame, in order.
+class Denoiser {
+  public:
+    Denoiser();
+    ~Denoiser();
+    Denoiser(const Denoiser&) = delete;
+    Denoiser& operator=(const Denoiser&) = delete;
+
+    /// `gbuffer` has the planes normal, motion and albedo; its colours are not read. A changed size
+    /// is a reset.
+    void run(const GBuffer& gbuffer, const LightPlanes& noisy, const DenoiseFrame& frame,
+             SimdTarget simd, Workers& workers);
+
+    /// The result of the last run(); valid until the next.
+    LightPlanes light() const;
+    /// For TaaFrame::light_age. Empty: light has been as it is for long everywhere.
+    ImageView<const uint8_t> lightAge() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// G-buffer colour += albedo · (direct + indirect), saturated; in the tiles that are `wanted` (as
+/// in DenoiseFrame).
+void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint8_t> wanted,
+                SimdTarget simd, Workers& workers);
+
+}  // namespace still
