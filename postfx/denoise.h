@@ -9,6 +9,7 @@
 #include "postfx/colour_targets.h"
 #include "postfx/taa.h"
 #include "rasterizer/gbuffer.h"
+#include "rasterizer/light_sampler.h"
 #include "rasterizer/simd.h"
 #include "rasterizer/workers.h"
 
@@ -29,7 +30,6 @@ struct LightChange {
     ImageView<const uint16_t> direct_before, direct_now;
     ImageView<const uint16_t> indirect_before, indirect_now;
 };
-constexpr int kLightBlock = 3;
 
 /// What the frame loop knows and the pixels do not show.
 struct DenoiseFrame {

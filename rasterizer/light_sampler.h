@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
@@ -20,26 +21,26 @@ namespace still {
 
 /// Light that arrives at each pixel's surface, as a white surface would show it: multiplied by the
 /// albedo planes it is colour. Linear, fx12 as the colour planes, saturated; 0 where no surface is.
-struct LightPlanes {
+struct LightImages {
     Image<uint16_t> direct_red, direct_green, direct_blue;        ///< from lights
     Image<uint16_t> indirect_red, indirect_green, indirect_blue;  ///< sky and other surfaces
 
-    int width() const { return direct_red.width(); }
-    int height() const { return direct_red.height(); }
     void resize(int width, int height);
 };
 
-/// Luminance (Rec. 709, fx12) of one sample of the previous frame, as it was and as the same sample
-/// (same place on its surface, same random numbers) is in the present scene. Exactly equal where no
-/// light, no occluder and no reflecting surface changed. All 0 where no such sample is.
-struct LightChange {
-    uint16_t direct_before = 0, direct_now = 0;
-    uint16_t indirect_before = 0, indirect_now = 0;
-    friend bool operator==(const LightChange&, const LightChange&) = default;
-};
-
-/// Pixels (x, y) of the block of a LightChange: x / kLightBlock, y / kLightBlock.
+/// Each block of kLightBlock² pixels holds one sample of a LightChangeImages.
 constexpr int kLightBlock = 3;
+
+/// Luminance (Rec. 709, fx12) of one sample in each block of the *previous* frame, as it was and as
+/// the very same sample (same place on its surface, same random numbers) is in the present scene.
+/// Exactly equal where no light, no occluder and no reflecting surface changed; 0 where no surface
+/// was. Sized ceil(width / kLightBlock) × ceil(height / kLightBlock).
+struct LightChangeImages {
+    Image<uint16_t> direct_before, direct_now;
+    Image<uint16_t> indirect_before, indirect_now;
+
+    void resize(int width, int height);
+};
 
 /// Keeps its trees from frame to frame: those of meshes as long as it lives, so that meshes, their
 /// textures and the alpha modes of their materials have to stay as they are. Not copyable, one
@@ -55,16 +56,16 @@ class LightSampler {
     /// is traced is built. `list` and `view` must stay valid until sample() has returned.
     void setUp(const DrawList& list, const FrameView& view, SimdTarget simd, Workers& workers);
 
-    /// How light changed since the last frame that was sampled with `keep`, for each block of the
-    /// present frame: sized ceil(width / 3) × ceil(height / 3). False, and `out` stays as it is,
-    /// where nothing can have changed: no instance moved and lighting and materials are the same;
-    /// or where nothing was kept. `gbuffer` is the present frame's.
-    bool changes(const GBuffer& gbuffer, Image<LightChange>& out, Workers& workers);
+    /// How light changed since the frame that was sampled last, if that was done with `keep`.
+    /// False, and `out` stays as it is, where nothing was kept, and where nothing can have changed:
+    /// no instance moved, and lighting and materials are what they were.
+    bool changes(LightChangeImages& out, Workers& workers);
 
-    /// Writes all of `out`, which gets the view's size: the part that is traced. Adds the
-    /// highlights of traced lights to the G-buffer's colour. Needs the normal plane. `keep`: for
-    /// changes() of the next frame.
-    void sample(GBuffer& gbuffer, LightPlanes& out, bool keep, Workers& workers);
+    /// Writes `out`, which gets the view's size: the part of the light that is traced. Adds the
+    /// highlights of traced lights to the G-buffer's colour. Needs the normal plane. `wanted` as in
+    /// Rasterizer::rasterize(): elsewhere all planes stay. `keep`: for changes() of the next frame.
+    void sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers,
+                std::span<const uint8_t> wanted = {});
 
   private:
     struct State;
