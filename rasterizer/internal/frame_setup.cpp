@@ -184,6 +184,18 @@ void setUpInstance(const DrawList& list, const FrameView& view, const RasterSett
     }
 }
 
+/// Highlights of a sampled sun and of sampled lights go with their light.
+PlainLight plainLight(const Lighting& lighting) {
+    PlainLight light{lighting.ambient, lighting.sun, lighting.points};
+    if (lighting.sampled.sun_shadow != SunShadow::none) {
+        light.sun.colour = {};
+    }
+    if (lighting.sampled.ambient != AmbientLight::plain) {
+        light.ambient = {};
+    }
+    return light;
+}
+
 }  // namespace
 
 void setUpFrame(const DrawList& list, const FrameView& view, const RasterSettings& settings,
@@ -212,6 +224,7 @@ void setUpFrame(const DrawList& list, const FrameView& view, const RasterSetting
     FrameTables& t = out.tables;
     t.list = &list;
     t.view = &view;
+    t.light = plainLight(list.lighting);
     t.planes = settings.planes;
     t.camera_moved = camera_moved;
     // Of a camera that stands still exactly the identity, so that its motion is exactly zero.

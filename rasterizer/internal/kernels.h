@@ -3,6 +3,7 @@
 // NAME-inl.h (Highway) and NAME_reference.cpp (the plain scalar truth).
 
 #include <cstdint>
+#include <span>
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
@@ -97,9 +98,17 @@ struct InstanceSetup {
     MatrixF pixels_now, pixels_before;  ///< object → (x_px·w, y_px·w, z', w); only when moved
 };
 
+/// The light that colours are made of: all but what is sampled.
+struct PlainLight {
+    std::array<float, 3> ambient{};
+    DirectionalLight sun{};
+    std::span<const PointLight> points{};
+};
+
 struct FrameTables {
     const DrawList* list = nullptr;
     const FrameView* view = nullptr;
+    PlainLight light;
     PlaneSet planes;
     bool camera_moved = false;
     Matrix reproject;  ///< (x_px, y_px, z, 1) now → (x_px·w, y_px·w, z', w) before
@@ -130,6 +139,7 @@ struct TileRun {
 /// Where a tile's pixels go: first pixel of each plane, strides in elements.
 struct TilePlanes {
     uint16_t *red, *green, *blue, *id, *depth_before;
+    uint16_t *albedo_red, *albedo_green, *albedo_blue;  ///< null: not wanted
     uint32_t *depth, *normal;
     /// Null: the plane is not wanted, or stays zero and depth_before is that of the depth itself.
     Motion* motion;

@@ -76,7 +76,7 @@ template <bool kFull, bool kUniform>
 HWY_INLINE LaneLight lightSurface(const TileContext& tile, const LaneTriangles<kUniform>& t,
                                   const LaneBarycentrics& p, const Surface& s,
                                   const InstanceSetup& instance, const Vec3& n) {
-    const Lighting& lighting = tile.frame->list->lighting;
+    const PlainLight& lighting = tile.frame->light;
     const FVec zero = hn::Zero(FTag());
     LaneLight lit{
         {splat(lighting.ambient[0]), splat(lighting.ambient[1]), splat(lighting.ambient[2])},

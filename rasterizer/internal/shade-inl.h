@@ -15,11 +15,16 @@ struct LaneMotion {
     IVec depth_before;
 };
 
+struct LaneColour {
+    IVec red, green, blue;
+};
+
 /// What shading finds out about a group of pixels, as 32-bit lanes until it is stored.
 struct GroupOutput {
     IVec red, green, blue, id;
     IVec normal;
-    bool own_motion;  ///< the surface moves by itself; otherwise `motion` is not used
+    LaneColour albedo;  ///< 0 where nobody wants it
+    bool own_motion;    ///< the surface moves by itself; otherwise `motion` is not used
     LaneMotion motion;
 };
 
@@ -187,15 +192,25 @@ HWY_INLINE GroupOutput shadeSurface(const TileContext& tile, FVec x, FVec y,
                     toFx12(colour.z),
                     splatInt(int32_t(surface | (instance.moved ? kMovedBit : 0u))),
                     zero,
+                    {zero, zero, zero},
                     instance.own_motion && tile.planes.motion != nullptr,
                     {zero, zero}};
     if (frame.planes.normal) {
         out.normal = packOctahedral(n);
     }
+    if (frame.planes.albedo) {
+        out.albedo = {toFx12(albedo.x), toFx12(albedo.y), toFx12(albedo.z)};
+    }
     if (out.own_motion) {
         out.motion = motionOf(reprojectMoved(instance, attribute3(t, p, kQuadPosition)));
     }
     return out;
+}
+
+HWY_INLINE void storeAlbedo(const TilePlanes& planes, ptrdiff_t at, const LaneColour& albedo) {
+    storeU16(albedo.red, planes.albedo_red + at);
+    storeU16(albedo.green, planes.albedo_green + at);
+    storeU16(albedo.blue, planes.albedo_blue + at);
 }
 
 /// Without motion.
@@ -206,6 +221,9 @@ HWY_INLINE void storePlanes(const TilePlanes& planes, ptrdiff_t at, const GroupO
     storeU16(out.id, planes.id + at);
     if (planes.normal != nullptr) {
         hn::StoreU(out.normal, ITag(), reinterpret_cast<int32_t*>(planes.normal + at));
+    }
+    if (planes.albedo_red != nullptr) {
+        storeAlbedo(planes, at, out.albedo);
     }
 }
 
@@ -218,6 +236,7 @@ HWY_INLINE void storeBackground(const Group& group) {
                  toFx12(splat(background[2])),
                  zero,
                  zero,
+                 {zero, zero, zero},
                  false,
                  {zero, zero}});
 }
@@ -253,6 +272,21 @@ struct PixelQueue {
     alignas(64) int32_t pixel[kCapacity] = {};  ///< y · kTileSize + x
     alignas(64) int32_t ref[kCapacity] = {};
 };
+
+HWY_INLINE void storeQueuedAlbedo(const TilePlanes& planes, const PixelQueue& queue, int count,
+                                  const LaneColour& albedo) {
+    alignas(64) int32_t value[3][hn::MaxLanes(ITag())];
+    hn::Store(albedo.red, ITag(), value[0]);
+    hn::Store(albedo.green, ITag(), value[1]);
+    hn::Store(albedo.blue, ITag(), value[2]);
+    for (int lane = 0; lane < count; ++lane) {
+        const int i = queue.pixel[lane];
+        const ptrdiff_t at = (i / kTileSize) * planes.stride + i % kTileSize;
+        planes.albedo_red[at] = uint16_t(value[0][lane]);
+        planes.albedo_green[at] = uint16_t(value[1][lane]);
+        planes.albedo_blue[at] = uint16_t(value[2][lane]);
+    }
+}
 
 /// Shades the first pixels of the queue and takes them out of it.
 template <int kLevel>
@@ -294,6 +328,9 @@ HWY_NOINLINE void shadeQueued(const TileContext& tile, PixelQueue& queue) {
             planes.motion[at] = {int16_t(value[5][lane]), int16_t(value[5][lane] >> 16)};
             planes.depth_before[at] = uint16_t(value[6][lane]);
         }
+    }
+    if (planes.albedo_red != nullptr) {
+        storeQueuedAlbedo(planes, queue, count, out.albedo);
     }
     queue.count -= count;
     hn::Store(hn::Load(d, queue.pixel + kLanes), d, queue.pixel);
@@ -435,6 +472,11 @@ HWY_NOINLINE void shadeFragments(const TileContext& tile, uint32_t ref, int x, i
     const auto words = [&](const void* from) {
         return hn::LoadU(ITag(), static_cast<const int32_t*>(from));
     };
+    if (planes.albedo_red != nullptr) {
+        out.albedo = {merged(out.albedo.red, loadU16(planes.albedo_red + at)),
+                      merged(out.albedo.green, loadU16(planes.albedo_green + at)),
+                      merged(out.albedo.blue, loadU16(planes.albedo_blue + at))};
+    }
     if (planes.normal != nullptr) {
         out.normal = merged(out.normal, words(planes.normal + at));
     }

@@ -73,7 +73,7 @@ void addLight(Lit& lit, const Float3& to_light, const Float3& colour, float atte
 
 Lit lightSurface(const TileContext& tile, const PixelBarycentrics& p, const Surface& s,
                  const InstanceSetup& instance, const Float3& n) {
-    const Lighting& lighting = tile.frame->list->lighting;
+    const PlainLight& lighting = tile.frame->light;
     Lit lit{toFloat3(lighting.ambient), {0, 0, 0}};
     Float3 position{}, to_eye{};
     if ((s.features & kShadePosition) != 0) {
@@ -155,16 +155,20 @@ Reprojected reprojectMoved(const InstanceSetup& instance, const Float3& p) {
             w_before};
 }
 
+Float3 surfaceAlbedo(const Surface& s, const TextureCoordinates& c) {
+    const Float3 albedo = toFloat3(s.material->diffuse);
+    if (s.colour == nullptr) {
+        return albedo;
+    }
+    const Float3 texel = sampleTexture<true>(*s.colour, c, s.mip_bias_fx8);
+    return {albedo.x * (texel.x * kTexelToLinear), albedo.y * (texel.y * kTexelToLinear),
+            albedo.z * (texel.z * kTexelToLinear)};
+}
+
 Float3 surfaceColour(const TileContext& tile, const PixelBarycentrics& p, const Surface& s,
-                     const InstanceSetup& instance, const Float3& n, const TextureCoordinates& c) {
+                     const InstanceSetup& instance, const Float3& n, const Float3& albedo) {
     const Material& m = *s.material;
     const Lit lit = lightSurface(tile, p, s, instance, n);
-    Float3 albedo = toFloat3(m.diffuse);
-    if (s.colour != nullptr) {
-        const Float3 texel = sampleTexture<true>(*s.colour, c, s.mip_bias_fx8);
-        albedo = {albedo.x * (texel.x * kTexelToLinear), albedo.y * (texel.y * kTexelToLinear),
-                  albedo.z * (texel.z * kTexelToLinear)};
-    }
     Float3 colour{albedo.x * lit.diffuse.x + m.emission[0],
                   albedo.y * lit.diffuse.y + m.emission[1],
                   albedo.z * lit.diffuse.z + m.emission[2]};
@@ -203,6 +207,7 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
     const FrameTables& frame = *tile.frame;
     const size_t at = size_t(y) * size_t(tile.planes.stride) + size_t(x);
     Float3 colour = toFloat3(frame.list->background);
+    Float3 albedo{0, 0, 0};
     uint16_t id = 0;
     uint32_t normal = 0;
     bool own_motion = false;
@@ -215,7 +220,8 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
             c = displacedCoordinates(frame, p, s, textureCoordinates(p, s));
         }
         const Float3 n = shadingNormal(p, s, instance, c);
-        colour = surfaceColour(tile, p, s, instance, n, c);
+        albedo = surfaceAlbedo(s, c);
+        colour = surfaceColour(tile, p, s, instance, n, albedo);
         normal = packOctahedral(n);
         own_motion = instance.own_motion;
         id = uint16_t(triangle->surface | (instance.moved ? kMovedBit : 0));
@@ -228,6 +234,11 @@ void shadePixel(const TileContext& tile, const ShadeTriangle* triangle, int x, i
     tile.planes.blue[at] = toFx12(colour.z);
     tile.planes.depth[at] = std::bit_cast<uint32_t>(depth);
     tile.planes.id[at] = id;
+    if (tile.planes.albedo_red != nullptr) {
+        tile.planes.albedo_red[at] = toFx12(albedo.x);
+        tile.planes.albedo_green[at] = toFx12(albedo.y);
+        tile.planes.albedo_blue[at] = toFx12(albedo.z);
+    }
     if (tile.planes.normal != nullptr) {
         tile.planes.normal[at] = normal;
     }

@@ -75,6 +75,9 @@ TilePlanes planesAt(GBuffer& g, int x, int y) {
     p.red = at(g.red);
     p.green = at(g.green);
     p.blue = at(g.blue);
+    p.albedo_red = at(g.albedo_red);
+    p.albedo_green = at(g.albedo_green);
+    p.albedo_blue = at(g.albedo_blue);
     p.id = at(g.id);
     p.depth = at(g.depth);
     p.normal = at(g.normal);

@@ -53,6 +53,11 @@ std::string firstDifference(const GBuffer& a, const GBuffer& b) {
         compare(found, "motion", a.motion, b.motion);
         compare(found, "depth_before", a.depth_before, b.depth_before);
     }
+    if (a.planes.albedo && b.planes.albedo) {
+        compare(found, "albedo_red", a.albedo_red, b.albedo_red);
+        compare(found, "albedo_green", a.albedo_green, b.albedo_green);
+        compare(found, "albedo_blue", a.albedo_blue, b.albedo_blue);
+    }
     compare(found, "red", a.red, b.red);
     compare(found, "green", a.green, b.green);
     compare(found, "blue", a.blue, b.blue);

@@ -45,7 +45,7 @@ glm::dmat4 perspective(double focal, double aspect, double near, double far);
 glm::dmat4 rigid(double turns, double x, double y, double z);
 Affine toAffine(const glm::dmat4& m);
 
-constexpr PlaneSet kAllPlanes{.normal = true, .motion = true};
+constexpr PlaneSet kAllPlanes{.normal = true, .motion = true, .albedo = true};
 
 /// One frame on a serial scheduler.
 void draw(const DrawList& list, const FrameView& view, GBuffer& out,

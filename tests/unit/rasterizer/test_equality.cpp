@@ -79,9 +79,11 @@ TEST_CASE("equality: planes that are not wanted do not change the others", "[det
     const GBuffer expected = truth(scene, view);
     const bool normal = GENERATE(false, true);
     const bool motion = GENERATE(false, true);
-    const GBuffer out = truth(scene, view, {.normal = normal, .motion = motion});
+    const bool albedo = GENERATE(false, true);
+    const GBuffer out = truth(scene, view, {.normal = normal, .motion = motion, .albedo = albedo});
     CHECK(out.normal.empty() == !normal);
     CHECK(out.motion.empty() == !motion);
+    CHECK(out.albedo_red.empty() == !albedo);
     CHECK(firstDifference(expected, out) == "");
 }
 
