@@ -9,13 +9,23 @@
 
 namespace still::command {
 
+struct AtlasPlan {
+    std::vector<const AtlasCase*> cases{};
+    std::vector<Mode> modes{};
+    std::optional<size_t> versus{};  ///< the mode that the others are held against
+    Size resolution{320, 180};
+    int samples = kMaxSamples;  ///< at most so many of a reference
+    bool quiet = false;
+
+    static constexpr int kMaxSamples = 65536;
+};
+
 /// Measures cases × ways of anti-aliasing on all cores, with a progress bar. References and
 /// finished cells are kept in the cache.
-Outcome<AtlasReport> measureAtlas(std::vector<const AtlasCase*> cases, std::vector<Mode> modes,
-                                  Size resolution, FileCache cache, bool quiet = false);
+Outcome<AtlasReport> measureAtlas(AtlasPlan plan, FileCache cache);
 
 /// measureAtlas() of the named ones; writes index.html, atlas.json and atlas.csv into the output
-/// folder.
+/// folder, and prints the summary when one is asked for.
 Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption);
 
 }  // namespace still::command

@@ -12,7 +12,9 @@ namespace still::command {
 struct AtlasOptions {
     std::string scenes;   ///< comma-separated names of cases; empty: all that are not slow
     std::string presets;  ///< comma-separated columns; empty: raw, fxaa and all presets
+    std::string versus;   ///< one of the columns, which the others are held against; empty: none
     Size resolution{320, 180};
+    int samples = 0;     ///< at most so many of a reference; 0: as each case wants
     std::string cache;   ///< folder; empty: the user's
     std::string output;  ///< folder, made when it is not there
     bool json = false;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "demos/stillframe/atlas_summary.h"
 #include "demos/stillframe/page_parts.h"
 
 namespace still::command {
@@ -37,9 +38,12 @@ Json measuresJson(const SegmentMeasures& m) {
             {"ms", m.ms}};
 }
 
-Json resultJson(const AtlasResult& result) {
+Json resultJson(const AtlasResult& result, bool timed) {
     Json json{{"scene", result.scene}, {"segment", result.segment}, {"preset", result.preset}};
     json.update(measuresJson(result.measures));
+    if (timed) {
+        json["time_share"] = orNull(result.time_share);
+    }
     json["frames"] = Json::array();
     for (const FrameError& frame : result.measures.frames) {
         json["frames"].push_back({{"frame", frame.frame},
@@ -47,6 +51,28 @@ Json resultJson(const AtlasResult& result) {
                                   {"flip", shortened(frame.flip)}});
     }
     return json;
+}
+
+Json rowJson(const SummaryRow& row) {
+    return {{"segment", row.segment},
+            {"preset", row.preset},
+            {"cells", row.cells},
+            {"psnr_db", shortened(row.psnr_db)},
+            {"flip", shortened(row.flip)},
+            {"time", orNull(row.time)},
+            {"worst_scene", row.worst_scene},
+            {"worst_db", shortened(row.worst_db)}};
+}
+
+/// What stands after the results when there is a base.
+std::string summaryJson(const AtlasReport& report) {
+    std::string text = ",\n\"versus\": " + Json(report.versus).dump() + ", \"summary\": [";
+    const char* separator = "\n";
+    for (const SummaryRow& row : summaryOf(report)) {
+        text += separator + rowJson(row).dump();
+        separator = ",\n";
+    }
+    return text + "\n]";
 }
 
 Json caseJson(const AtlasCase& atlas_case) {
@@ -95,10 +121,10 @@ std::string atlasJson(const AtlasReport& report) {
                        ", \"height\": " + std::to_string(report.height) + ", \"results\": [";
     const char* separator = "\n";
     for (const AtlasResult& result : report.results) {
-        text += separator + resultJson(result).dump();
+        text += separator + resultJson(result, !report.versus.empty()).dump();
         separator = ",\n";
     }
-    return text + "\n]}\n";
+    return text + "\n]" + (report.versus.empty() ? "" : summaryJson(report)) + "}\n";
 }
 
 std::string atlasCsv(const AtlasReport& report) {

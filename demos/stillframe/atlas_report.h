@@ -12,6 +12,9 @@ namespace still::command {
 struct AtlasResult {
     std::string scene, segment, preset;
     SegmentMeasures measures;
+    /// Of the base's processor time for the same frames, see race.h; nothing when it was not
+    /// measured.
+    std::optional<double> time_share{};
 };
 
 struct AtlasReport {
@@ -19,11 +22,14 @@ struct AtlasReport {
     std::vector<const AtlasCase*> cases;
     std::vector<std::string> modes;
     std::vector<AtlasResult> results;  ///< by case, segment, mode
+    std::string versus;                ///< the mode that is the base of a summary; empty: none
 };
 
 /// {"width", "height", "results": [{"scene", "segment", "preset", "psnr", "ssim", "flip",
 /// "flicker", "ghost_area", "recovery_frames", "sharpness", "ms", "frames": [{"frame", "rms",
-/// "flip"} …]} …]}, one result a line; null where a measure does not apply.
+/// "flip"} …]} …]}, one result a line; null where a measure does not apply. With a base, results
+/// have "time_share" too, and at the end "versus" and "summary": [{"segment", "preset", "cells",
+/// "psnr_db", "flip", "time", "worst_scene", "worst_db"} …] stand.
 std::string atlasJson(const AtlasReport& report);
 
 /// The same without frames; an empty field is null.

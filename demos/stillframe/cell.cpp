@@ -1,19 +1,13 @@
 #include "demos/stillframe/cell.h"
 
-#include <time.h>
-
 #include <algorithm>
 
+#include "demos/stillframe/bench_scaling.h"
+#include "demos/stillframe/case_loop.h"
 #include "demos/stillframe/segment_meter.h"
 
 namespace still::command {
 namespace {
-
-double threadTimeMs() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
-}
 
 const CaseFrame* findFrame(const std::vector<CaseFrame>& frames, int frame) {
     const auto found = std::find_if(frames.begin(), frames.end(),
@@ -33,38 +27,13 @@ int lastFrame(const AtlasCase& atlas) {
     return last;
 }
 
-/// A frame loop whose size follows the case.
-class CaseLoop {
-  public:
-    CaseLoop(const PreparedCase& prepared, const Scene& scene, const FrameSettings& settings)
-        : prepared_(prepared),
-          workers_(1, Schedule::serial),
-          loop_(scene, settings, workers_),
-          size_{settings.width, settings.height} {}
-
-    FrameResult render(int frame) {
-        const Size size = sizeAt(*prepared_.atlas, prepared_.view, frame);
-        if (size.width != size_.width || size.height != size_.height) {
-            loop_.resize(size.width, size.height);
-            size_ = size;
-        }
-        return loop_.render(frame);
-    }
-
-  private:
-    const PreparedCase& prepared_;
-    Workers workers_;
-    FrameLoop loop_;
-    Size size_;
-};
-
 /// Steps through the frames of a case.
 class CellRun {
   public:
     CellRun(const PreparedCase& prepared, const Mode& mode)
         : prepared_(prepared),
           mode_(mode),
-          loop_(prepared, prepared.scene, mode.settings(prepared.view)) {
+          loop_(*prepared.atlas, prepared.scene, mode.settings(prepared.view)) {
         for (const AtlasSegment& segment : prepared.atlas->segments) {
             meters_.emplace_back(segment);
         }
@@ -135,7 +104,7 @@ std::vector<double> CellRun::startedAnew(size_t segment) const {
     scene.cuts = {*atlas.event_frame};
     FrameSettings settings = mode_.settings(prepared_.view);
     settings.first_sample = samplesBefore(*atlas.event_frame);
-    CaseLoop loop(prepared_, scene, settings);
+    CaseLoop loop(atlas, scene, settings);
     std::vector<double> errors;
     for (int frame = *atlas.event_frame; frame <= within.last; ++frame) {
         const FrameResult result = loop.render(frame);
@@ -168,17 +137,16 @@ std::vector<int> comparedFrames(const AtlasSegment& segment) {
     return frames;
 }
 
-Size sizeAt(const AtlasCase& atlas, const FrameSettings& view, int frame) {
+Size sizeAt(const AtlasCase& atlas, Size full, int frame) {
     const bool half = atlas.resize_frame && frame < *atlas.resize_frame;
-    return half ? Size{std::max(1, view.width / 2), std::max(1, view.height / 2)}
-                : Size{view.width, view.height};
+    return half ? Size{std::max(1, full.width / 2), std::max(1, full.height / 2)} : full;
 }
 
 void findRevealed(PreparedCase& prepared) {
     FrameSettings settings = prepared.view;
     settings.anti_aliasing = AntiAliasing::none;
     settings.planes.motion = true;
-    CaseLoop loop(prepared, prepared.scene, settings);
+    CaseLoop loop(*prepared.atlas, prepared.scene, settings);
     for (size_t i = 0; i < prepared.segments.size(); ++i) {
         const AtlasSegment& segment = prepared.atlas->segments[i];
         RevealMask mask;

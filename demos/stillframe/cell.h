@@ -61,8 +61,8 @@ struct PreparedCase {
 /// Frames of a segment that are compared.
 std::vector<int> comparedFrames(const AtlasSegment& segment);
 
-/// Size of a frame: half of the view's before the case's resize_frame, at least 1.
-Size sizeAt(const AtlasCase& atlas, const FrameSettings& view, int frame);
+/// Size of a frame: half of `full` before the case's resize_frame, at least 1.
+Size sizeAt(const AtlasCase& atlas, Size full, int frame);
 
 /// Fills in where surfaces have been revealed. The compared frames must have been listed.
 void findRevealed(PreparedCase& prepared);

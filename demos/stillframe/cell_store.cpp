@@ -140,4 +140,32 @@ std::optional<std::vector<SegmentMeasures>> cellFromBytes(const std::string& byt
     return reader.ok() ? std::optional(std::move(segments)) : std::nullopt;
 }
 
+std::string timesBytes(const std::vector<SegmentTimes>& segments) {
+    Writer writer;
+    for (const SegmentTimes& segment : segments) {
+        writer.put(segment ? int(segment->size()) : 0);
+        for (size_t i = 0; segment && i < segment->size(); ++i) {
+            writer.put((*segment)[i].ms);
+            writer.put((*segment)[i].share);
+        }
+    }
+    return writer.take();
+}
+
+std::optional<std::vector<SegmentTimes>> timesFromBytes(const std::string& bytes) {
+    Reader reader(bytes);
+    std::vector<SegmentTimes> segments;
+    while (reader.ok() && !reader.atEnd()) {
+        SegmentTimes& segment = segments.emplace_back();
+        int modes = 0;
+        reader.get(modes);
+        for (int i = 0; reader.ok() && i < modes; ++i) {
+            RaceTime& time = (segment ? *segment : segment.emplace()).emplace_back();
+            reader.get(time.ms);
+            reader.get(time.share);
+        }
+    }
+    return reader.ok() ? std::optional(std::move(segments)) : std::nullopt;
+}
+
 }  // namespace still::command

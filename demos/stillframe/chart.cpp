@@ -77,7 +77,9 @@ std::vector<ChartSegment> segmentsOf(const std::list<ChartScene>& scenes,
 std::vector<Mode> chartModes() {
     std::vector<Mode> modes = allModes();
     for (int samples : {2, 4, 8, 16}) {
-        modes.push_back({"ssaa:" + std::to_string(samples), AntiAliasing::ssaa, samples, {}});
+        modes.push_back({.name = "ssaa:" + std::to_string(samples),
+                         .anti_aliasing = AntiAliasing::ssaa,
+                         .ssaa_samples = samples});
     }
     return modes;
 }

@@ -38,8 +38,19 @@ Subcommand declareAtlas(CLI::App& app) {
         ->type_name("NAMES");
     atlas
         ->add_option("--presets", o->presets,
-                     "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa")
+                     "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa.\n"
+                     "NAME:KEY=VALUE changes a setting, as --taa does, or denoise=off")
         ->type_name("NAMES");
+    atlas
+        ->add_option("--versus", o->versus,
+                     "One of the presets: time all in turns with it, and print what they\n"
+                     "gain and cost against it, on the mean of all cases")
+        ->type_name("NAME");
+    atlas
+        ->add_option("--samples", o->samples,
+                     "At most so many of each reference: quick, and less exact")
+        ->check(CLI::Range(1, 65536))
+        ->type_name("N");
     addSize(*atlas, o->resolution, "Default 320x180");
     return {atlas, [o](Interruption& interruption) {
                 return still::command::atlas(*o, interruption).map([] { return ExitCode::ok; });

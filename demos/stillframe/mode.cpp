@@ -8,8 +8,20 @@
 namespace still::command {
 namespace {
 
+std::vector<std::string> splitAt(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find(separator, begin), text.size());
+        parts.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
 Mode presetMode(const TaaPreset& preset) {
-    return {std::string(preset.name), AntiAliasing::taa, 1, preset.policy};
+    return {.name = std::string(preset.name),
+            .anti_aliasing = AntiAliasing::taa,
+            .policy = preset.policy};
 }
 
 std::optional<Mode> findMode(const std::string& name) {
@@ -21,7 +33,9 @@ std::optional<Mode> findMode(const std::string& name) {
     }
     const auto choice = parseAntiAliasing(name);
     if (choice && choice->mode == AntiAliasing::ssaa) {
-        return Mode{name, AntiAliasing::ssaa, choice->ssaa_samples, {}};
+        return Mode{.name = name,
+                    .anti_aliasing = AntiAliasing::ssaa,
+                    .ssaa_samples = choice->ssaa_samples};
     }
     return std::nullopt;
 }
@@ -34,6 +48,44 @@ std::string knownModes() {
     return names + "ssaa:N";
 }
 
+/// Where the settings of "bicubic:ratio=2" begin; an N of "ssaa:N" is none.
+size_t settingsAt(const std::string& text) {
+    const size_t equals = text.find('=');
+    return equals == std::string::npos ? text.size() : std::min(text.rfind(':', equals), equals);
+}
+
+/// One "KEY=VALUE" of a mode.
+Outcome<void> applySetting(const std::string& setting, Mode& mode) {
+    if (setting == "denoise=on" || setting == "denoise=off") {
+        mode.denoise = setting == "denoise=on" ? Denoise::svgf : Denoise::off;
+        return {};
+    }
+    if (!mode.temporal() || setting.starts_with("denoise=")) {
+        return usageError(setting + ": expected denoise=on or denoise=off");
+    }
+    const auto policy = still::parseTaaSettings(setting, mode.policy);
+    if (!policy) {
+        return usageError(policy.error().message);
+    }
+    mode.policy = *policy;
+    return {};
+}
+
+Outcome<Mode> modeFrom(const std::string& text) {
+    const size_t end = settingsAt(text);
+    auto mode = findMode(text.substr(0, end));
+    if (!mode) {
+        return usageError(text + ": expected names out of " + knownModes());
+    }
+    mode->name = text;
+    for (const std::string& setting : splitAt(text.substr(std::min(end + 1, text.size())), ':')) {
+        if (auto applied = applySetting(setting, *mode); !applied) {
+            return usageError(text + ": " + applied.error().message);
+        }
+    }
+    return *mode;
+}
+
 }  // namespace
 
 FrameSettings Mode::settings(const FrameSettings& view) const {
@@ -41,12 +93,13 @@ FrameSettings Mode::settings(const FrameSettings& view) const {
     settings.anti_aliasing = anti_aliasing;
     settings.ssaa_samples = ssaa_samples;
     settings.policy = policy;
+    settings.denoise = denoise;
     return settings;
 }
 
 std::vector<Mode> allModes() {
-    std::vector<Mode> modes{{"raw", AntiAliasing::none, 1, {}},
-                            {"fxaa", AntiAliasing::fxaa, 1, {}}};
+    std::vector<Mode> modes{{.name = "raw", .anti_aliasing = AntiAliasing::none},
+                            {.name = "fxaa", .anti_aliasing = AntiAliasing::fxaa}};
     for (const TaaPreset& preset : taaPresets()) {
         modes.push_back(presetMode(preset));
     }
@@ -59,23 +112,17 @@ Outcome<std::vector<Mode>> parseModes(const std::string& text, const std::string
     }
     std::vector<Mode> modes;
     for (const std::string& name : splitAtCommas(text)) {
-        const auto mode = findMode(name);
+        auto mode = modeFrom(name);
         if (!mode) {
-            return usageError(option + ": " + name + ": expected names out of " + knownModes());
+            return usageError(option + ": " + mode.error().message);
         }
-        modes.push_back(*mode);
+        modes.push_back(std::move(*mode));
     }
     return modes;
 }
 
 std::vector<std::string> splitAtCommas(const std::string& text) {
-    std::vector<std::string> parts;
-    for (size_t begin = 0; begin < text.size();) {
-        const size_t end = std::min(text.find(',', begin), text.size());
-        parts.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
+    return splitAt(text, ',');
 }
 
 }  // namespace still::command

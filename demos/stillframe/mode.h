@@ -11,10 +11,11 @@
 namespace still::command {
 
 struct Mode {
-    std::string name;  ///< "raw", "fxaa", "ssaa:N" or a preset's
+    std::string name;  ///< as parseModes() takes it
     AntiAliasing anti_aliasing = AntiAliasing::none;
     int ssaa_samples = 1;
-    TaaPolicy policy;  ///< with AntiAliasing::taa
+    TaaPolicy policy{};  ///< with AntiAliasing::taa
+    Denoise denoise = Denoise::svgf;
 
     bool temporal() const { return anti_aliasing == AntiAliasing::taa; }
     /// `view` with this way of anti-aliasing.
@@ -24,7 +25,9 @@ struct Mode {
 /// raw, fxaa, then all presets in their own order.
 std::vector<Mode> allModes();
 
-/// "still,raw,ssaa:4"; empty text means allModes(). Names of errors begin with `option`.
+/// Names with commas: raw, fxaa, ssaa:N, or a preset. A name may be followed by settings, each
+/// after a colon: those of --taa for presets ("bicubic:ratio=2"), and denoise=off for all
+/// ("raw:denoise= off"). Empty text means allModes(). Errors begin with `option`.
 Outcome<std::vector<Mode>> parseModes(const std::string& text, const std::string& option);
 
 /// Parts between commas; none in empty text.

@@ -48,8 +48,9 @@ AtlasCase quickCase(const std::string& scene) {
 MeasuredScene::MeasuredScene(const AtlasCase& atlas, const std::string& modes, Size size) {
     Interruption interruption;
     FileCache cache = orFail(FileCache::open(STILL_STABILITY_CACHE, interruption));
-    AtlasReport report =
-        orFail(measureAtlas({&atlas}, orFail(parseModes(modes, "modes")), size, std::move(cache)));
+    AtlasReport report = orFail(measureAtlas(
+        {.cases = {&atlas}, .modes = orFail(parseModes(modes, "modes")), .resolution = size},
+        std::move(cache)));
     results_ = std::move(report.results);
 }
 
