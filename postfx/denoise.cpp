@@ -1,0 +1,280 @@
+// One frame: how light changed, block by block → every tile: what its pixels show, past and present
+// blended, how uncertain that is → passes of the filter.
+
+#include "postfx/denoise.h"
+
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "postfx/internal/denoise_kernels.h"
+#include "postfx/internal/denoise_rules.h"
+
+namespace still {
+namespace {
+
+using denoising::BlockChange;
+using denoising::FilterPlanes;
+using denoising::Job;
+using denoising::kChannels;
+using denoising::kParts;
+using denoising::Past;
+using denoising::TileRect;
+
+struct PastImages {
+    std::array<Image<float>, kChannels> light;
+    std::array<Image<float>, kParts> square;
+    std::array<Image<uint8_t>, kParts> count, age;
+    std::array<Image<float>, 3> normal;
+    Image<uint16_t> surface, depth;
+
+    void resize(int width, int height) {
+        const auto all = [&](auto& images) {
+            for (auto& image : images) {
+                image.resize(width, height);
+            }
+        };
+        all(light);
+        all(square);
+        all(count);
+        all(age);
+        all(normal);
+        surface.resize(width, height);
+        depth.resize(width, height);
+    }
+    Past pointers() {
+        Past past;
+        for (size_t c = 0; c < kChannels; ++c) {
+            past.light[c] = light[c].view().data;
+        }
+        for (size_t p = 0; p < kParts; ++p) {
+            past.square[p] = square[p].view().data;
+            past.count[p] = count[p].view().data;
+            past.age[p] = age[p].view().data;
+        }
+        for (size_t c = 0; c < 3; ++c) {
+            past.normal[c] = normal[c].view().data;
+        }
+        past.surface = surface.view().data;
+        past.depth = depth.view().data;
+        return past;
+    }
+};
+
+struct FilterImages {
+    std::array<Image<uint16_t>, kChannels> light;
+    std::array<Image<float>, kParts> variance;
+
+    void resize(int width, int height) {
+        for (auto& image : light) {
+            image.resize(width, height);
+        }
+        for (auto& image : variance) {
+            image.resize(width, height);
+        }
+    }
+    FilterPlanes pointers() {
+        FilterPlanes planes;
+        for (size_t c = 0; c < kChannels; ++c) {
+            planes.light[c] = light[c].view().data;
+        }
+        for (size_t p = 0; p < kParts; ++p) {
+            planes.variance[p] = variance[p].view().data;
+        }
+        return planes;
+    }
+};
+
+/// Blocks on each side whose samples tell how light changed in one.
+constexpr int kChangeReach = 2;
+
+/// From the samples of a block and its neighbours. Where all of them changed by the same factor,
+/// that is what happened to the light; the rest is uncertain.
+BlockChange changeOf(ImageView<const uint16_t> before, ImageView<const uint16_t> now, int x,
+                     int y) {
+    const int x0 = std::max(x - kChangeReach, 0), x1 = std::min(x + kChangeReach, now.width - 1);
+    const int y0 = std::max(y - kChangeReach, 0), y1 = std::min(y + kChangeReach, now.height - 1);
+    uint32_t sum_before = 0, sum_now = 0, sum_most = 0;
+    bool same = true;
+    for (int j = y0; j <= y1; ++j) {
+        for (int i = x0; i <= x1; ++i) {
+            const uint16_t a = before.row(j)[i], b = now.row(j)[i];
+            same &= a == b;
+            sum_before += a;
+            sum_now += b;
+            sum_most += std::max(a, b);
+        }
+    }
+    if (same) {
+        return {};
+    }
+    const float ratio = sum_before == 0 ? 1.0f : float(sum_now) / float(sum_before);
+    float off = 0;
+    for (int j = y0; j <= y1; ++j) {
+        for (int i = x0; i <= x1; ++i) {
+            off += std::abs(float(now.row(j)[i]) - ratio * float(before.row(j)[i]));
+        }
+    }
+    return {ratio, std::min(1.0f, off / float(sum_most))};
+}
+
+}  // namespace
+
+struct Denoiser::State {
+    int width = 0, height = 0;
+    int tiles_x = 0, tiles = 0;
+    std::array<PastImages, 2> past;
+    int cursor = 0;
+    bool has_past = false;
+    std::array<FilterImages, 2> filtered;
+    std::array<std::vector<BlockChange>, kParts> change;
+    Image<uint8_t> light_age;
+
+    TileRect rectOf(int tile) const {
+        const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
+        return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
+    }
+    template <class Kernel>
+    void eachTile(Workers& workers, Kernel&& kernel) {
+        workers.parallelFor(tiles, 1, [&](int begin, int end, int) {
+            for (int tile = begin; tile < end; ++tile) {
+                kernel(rectOf(tile));
+            }
+        });
+    }
+    void resize(int new_width, int new_height);
+    void noteChange(const LightChange& seen, Workers& workers);
+    Job makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, bool changed);
+};
+
+void Denoiser::State::resize(int new_width, int new_height) {
+    if (width == new_width && height == new_height) {
+        return;
+    }
+    width = new_width;
+    height = new_height;
+    tiles_x = (width + kTileSize - 1) / kTileSize;
+    tiles = tiles_x * ((height + kTileSize - 1) / kTileSize);
+    for (PastImages& images : past) {
+        images.resize(width, height);
+    }
+    for (FilterImages& images : filtered) {
+        images.resize(width, height);
+    }
+    light_age.resize(width, height);
+    has_past = false;
+}
+
+void Denoiser::State::noteChange(const LightChange& seen, Workers& workers) {
+    const std::array<ImageView<const uint16_t>, kParts> before{seen.direct_before,
+                                                               seen.indirect_before};
+    const std::array<ImageView<const uint16_t>, kParts> now{seen.direct_now, seen.indirect_now};
+    for (size_t p = 0; p < kParts; ++p) {
+        const int blocks_x = now[p].width, blocks_y = now[p].height;
+        change[p].resize(size_t(blocks_x) * size_t(blocks_y));
+        workers.parallelFor(blocks_y, 8, [&](int begin, int end, int) {
+            for (int y = begin; y < end; ++y) {
+                for (int x = 0; x < blocks_x; ++x) {
+                    change[p][size_t(y * blocks_x + x)] = changeOf(before[p], now[p], x, y);
+                }
+            }
+        });
+    }
+}
+
+Job Denoiser::State::makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, bool changed) {
+    Job job;
+    job.width = width;
+    job.height = height;
+    job.stride = gbuffer.id.view().stride;
+    job.id = gbuffer.id.view().data;
+    job.depth = gbuffer.depth.view().data;
+    job.normal = gbuffer.normal.view().data;
+    job.motion = gbuffer.motion.view().data;
+    job.depth_before = gbuffer.depth_before.view().data;
+    const ColourPlanes* parts[kParts] = {&noisy.direct, &noisy.indirect};
+    for (int p = 0; p < kParts; ++p) {
+        job.noisy[3 * p] = parts[p]->red.data;
+        job.noisy[3 * p + 1] = parts[p]->green.data;
+        job.noisy[3 * p + 2] = parts[p]->blue.data;
+        job.change[p] = changed ? change[size_t(p)].data() : nullptr;
+    }
+    job.blocks_x = (width + kLightBlock - 1) / kLightBlock;
+    job.has_past = has_past;
+    job.before = past[size_t(1 - cursor)].pointers();
+    job.now = past[size_t(cursor)].pointers();
+    job.first = filtered[0].pointers();
+    job.light_age = light_age.view().data;
+    return job;
+}
+
+Denoiser::Denoiser() : state_(std::make_unique<State>()) {}
+Denoiser::~Denoiser() = default;
+
+void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const DenoiseFrame& frame,
+                   SimdTarget, Workers& workers) {
+    assert(gbuffer.planes.normal && gbuffer.planes.motion);
+    State& s = *state_;
+    s.resize(gbuffer.width(), gbuffer.height());
+    s.has_past &= !frame.reset;
+    const bool changed = s.has_past && !frame.change.direct_now.empty();
+    if (changed) {
+        s.noteChange(frame.change, workers);
+    }
+    s.cursor = 1 - s.cursor;
+    const Job job = s.makeJob(gbuffer, noisy, changed);
+    s.eachTile(workers, [&](const TileRect& tile) { denoising::guidesReference(job, tile); });
+    s.eachTile(workers, [&](const TileRect& tile) { denoising::blendReference(job, tile); });
+    s.eachTile(workers, [&](const TileRect& tile) { denoising::varianceReference(job, tile); });
+    for (int pass = 0; pass < denoising::kPasses; ++pass) {
+        const FilterPlanes in = s.filtered[size_t(pass % 2)].pointers();
+        const FilterPlanes out = s.filtered[size_t(1 - pass % 2)].pointers();
+        s.eachTile(workers, [&](const TileRect& tile) {
+            denoising::filterReference(job, in, out, pass, tile);
+        });
+    }
+    s.has_past = true;
+}
+
+LightPlanes Denoiser::light() const {
+    const FilterImages& images = state_->filtered[denoising::kPasses % 2];
+    return {{images.light[0].view(), images.light[1].view(), images.light[2].view()},
+            {images.light[3].view(), images.light[4].view(), images.light[5].view()}};
+}
+
+ImageView<const uint8_t> Denoiser::lightAge() const {
+    return std::as_const(state_->light_age).view();
+}
+
+void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint8_t> wanted,
+                SimdTarget, Workers& workers) {
+    const ColourTargets to{gbuffer.red.view(), gbuffer.green.view(), gbuffer.blue.view()};
+    const auto add = [](const uint16_t* albedo, const uint16_t* direct, const uint16_t* indirect,
+                        uint16_t* out, int count) {
+        for (int x = 0; x < count; ++x) {
+            const uint32_t both = std::min<uint32_t>(uint32_t(direct[x]) + indirect[x], 65535);
+            const uint32_t added = (albedo[x] * both + kColourOne / 2) >> kColourBits;
+            out[x] = uint16_t(std::min<uint32_t>(out[x] + added, 65535));
+        }
+    };
+    workers.parallelFor(gbuffer.tiles_x * gbuffer.tiles_y, 1, [&](int begin, int end, int) {
+        for (int tile = begin; tile < end; ++tile) {
+            if (!wanted.empty() && wanted[size_t(tile)] == 0) {
+                continue;
+            }
+            const int x0 = tile % gbuffer.tiles_x * kTileSize;
+            const int y0 = tile / gbuffer.tiles_x * kTileSize;
+            const int width = std::min(kTileSize, gbuffer.width() - x0);
+            for (int y = y0; y < std::min(y0 + kTileSize, gbuffer.height()); ++y) {
+                add(gbuffer.albedo_red.view().row(y) + x0, light.direct.red.row(y) + x0,
+                    light.indirect.red.row(y) + x0, to.red.row(y) + x0, width);
+                add(gbuffer.albedo_green.view().row(y) + x0, light.direct.green.row(y) + x0,
+                    light.indirect.green.row(y) + x0, to.green.row(y) + x0, width);
+                add(gbuffer.albedo_blue.view().row(y) + x0, light.direct.blue.row(y) + x0,
+                    light.indirect.blue.row(y) + x0, to.blue.row(y) + x0, width);
+            }
+        }
+    });
+}
+
+}  // namespace still
