@@ -3,6 +3,7 @@
 #include "engine/internal/obj.h"
 #include "engine/internal/obj_text.h"
 #include "engine/internal/scene_file.h"
+#include "engine/internal/scene_lights.h"
 #include "engine/internal/tracks.h"
 #include "engine/load.h"
 #include "engine/timeline.h"

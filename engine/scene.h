@@ -100,6 +100,22 @@ struct CameraFile {
     std::vector<std::string> warnings{};  ///< one line each, for standard error
 };
 
+/// See SphereLight.
+struct SceneSphere {
+    Track<glm::dvec3> position;
+    double radius = 1;  ///< > 0
+    std::array<float, 3> colour{1, 1, 1};
+    Track<double> intensity{};  ///< multiplies; empty = 1
+};
+
+/// See RectangleLight.
+struct SceneRectangle {
+    Track<glm::dvec3> centre;
+    glm::dvec3 edge_u{1, 0, 0}, edge_v{0, 0, 1};
+    std::array<float, 3> colour{1, 1, 1};
+    Track<double> intensity{};
+};
+
 struct SceneLights {
     std::array<float, 3> ambient{0.25f, 0.25f, 0.25f};
     Track<double> ambient_intensity;  ///< multiplies; empty = 1
@@ -107,6 +123,19 @@ struct SceneLights {
     Track<double> sun_intensity;
     std::vector<PointLight> points;
     std::vector<Track<double>> point_intensity;  ///< one per point light, or empty
+
+    // Light that is sampled, see SampledLight.
+    SunShadow sun_shadow = SunShadow::none;
+    double sun_angle_deg = 0.53;  ///< that the sun's disc spans, 0 … 90
+    AmbientLight ambient_light = AmbientLight::plain;
+    double occlusion_distance = 1;  ///< > 0, with AmbientLight::…_occlusion
+    std::vector<SceneSphere> spheres{};
+    std::vector<SceneRectangle> rectangles{};
+
+    bool sampled() const {
+        return sun_shadow != SunShadow::none || ambient_light != AmbientLight::plain ||
+               !spheres.empty() || !rectangles.empty();
+    }
 };
 
 struct Bounds {

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/camera.h"
+#include "engine/det_math.h"
 #include "engine/internal/tracks.h"
 
 namespace still {
@@ -55,6 +56,28 @@ std::array<float, 3> scaled(const std::array<float, 3>& colour, const Track<doub
     return {float(colour[0] * factor), float(colour[1] * factor), float(colour[2] * factor)};
 }
 
+std::array<float, 3> toFloat(const glm::dvec3& v) {
+    return {float(v.x), float(v.y), float(v.z)};
+}
+
+SampledLight sampledAt(const SceneLights& lights, int frame) {
+    SampledLight sampled;
+    sampled.sun_shadow = lights.sun_shadow;
+    sampled.sun_tangent = float(det::tanDegrees(lights.sun_angle_deg / 2));
+    sampled.ambient = lights.ambient_light;
+    sampled.occlusion_distance = float(lights.occlusion_distance);
+    for (const SceneSphere& s : lights.spheres) {
+        sampled.spheres.push_back({toFloat(valueAt(s.position, frame, glm::dvec3(0))),
+                                   float(s.radius), scaled(s.colour, s.intensity, frame)});
+    }
+    for (const SceneRectangle& r : lights.rectangles) {
+        sampled.rectangles.push_back({toFloat(valueAt(r.centre, frame, glm::dvec3(0))),
+                                      toFloat(r.edge_u), toFloat(r.edge_v),
+                                      scaled(r.colour, r.intensity, frame)});
+    }
+    return sampled;
+}
+
 Lighting lightingAt(const SceneLights& lights, int frame) {
     Lighting lighting;
     lighting.ambient = scaled(lights.ambient, lights.ambient_intensity, frame);
@@ -64,23 +87,56 @@ Lighting lightingAt(const SceneLights& lights, int frame) {
         lighting.points[i].colour =
             scaled(lights.points[i].colour, lights.point_intensity[i], frame);
     }
+    if (lights.sampled()) {
+        lighting.sampled = sampledAt(lights, frame);
+    }
     return lighting;
 }
 
 bool lightingVaries(const SceneLights& lights) {
+    const auto sphere_varies = [](const SceneSphere& light) {
+        return varies(light.position) || varies(light.intensity);
+    };
+    const auto rectangle_varies = [](const SceneRectangle& light) {
+        return varies(light.centre) || varies(light.intensity);
+    };
     return varies(lights.ambient_intensity) || varies(lights.sun_intensity) ||
            std::any_of(lights.point_intensity.begin(), lights.point_intensity.end(),
-                       [](const Track<double>& track) { return varies(track); });
+                       [](const Track<double>& track) { return varies(track); }) ||
+           std::any_of(lights.spheres.begin(), lights.spheres.end(), sphere_varies) ||
+           std::any_of(lights.rectangles.begin(), lights.rectangles.end(), rectangle_varies);
 }
 
-bool sameLight(const Lighting& a, const Lighting& b) {
+bool sameSun(const Lighting& a, const Lighting& b) {
+    return a.sun.direction == b.sun.direction && a.sun.colour == b.sun.colour;
+}
+
+/// Of the light that surfaces' colours are made of.
+bool samePlainLight(const Lighting& a, const Lighting& b) {
     const auto same_point = [](const PointLight& p, const PointLight& q) {
         return p.position == q.position && p.colour == q.colour;
     };
-    return a.ambient == b.ambient && a.sun.direction == b.sun.direction &&
-           a.sun.colour == b.sun.colour &&
+    return (a.sampled.ambient != AmbientLight::plain || a.ambient == b.ambient) &&
+           (a.sampled.sun_shadow != SunShadow::none || sameSun(a, b)) &&
            std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
                       same_point);
+}
+
+bool sameSampledLight(const Lighting& a, const Lighting& b) {
+    const auto same_sphere = [](const SphereLight& p, const SphereLight& q) {
+        return p.position == q.position && p.colour == q.colour;
+    };
+    const auto same_rectangle = [](const RectangleLight& p, const RectangleLight& q) {
+        return p.centre == q.centre && p.colour == q.colour;
+    };
+    const SampledLight& now = a.sampled;
+    const SampledLight& before = b.sampled;
+    return (now.ambient == AmbientLight::plain || a.ambient == b.ambient) &&
+           (now.sun_shadow == SunShadow::none || sameSun(a, b)) &&
+           std::equal(now.spheres.begin(), now.spheres.end(), before.spheres.begin(),
+                      before.spheres.end(), same_sphere) &&
+           std::equal(now.rectangles.begin(), now.rectangles.end(), before.rectangles.begin(),
+                      before.rectangles.end(), same_rectangle);
 }
 
 /// At `instant`, with the transforms of `before`; a cut has no before.
@@ -292,8 +348,11 @@ FrameState frameStateAt(const Scene& scene, const CameraChoice& choice, int fram
     state.lighting = lightingAt(scene.lights, instant);
     state.camera = cameraAt(scene, choice, frame, aspect);
     state.camera_before = state.cut ? state.camera : cameraAt(scene, choice, frame - 1, aspect);
-    state.lighting_changed =
-        !state.cut && !sameLight(state.lighting, lightingAt(scene.lights, before));
+    if (!state.cut) {
+        const Lighting lighting_before = lightingAt(scene.lights, before);
+        state.lighting_changed = !samePlainLight(state.lighting, lighting_before);
+        state.sampled_light_changed = !sameSampledLight(state.lighting, lighting_before);
+    }
     state.materials = materialsAt(scene, instant);
     if (!scene.material_tracks.empty() && !state.cut) {
         state.changed_surfaces = changedSurfaces(scene, instant, before);

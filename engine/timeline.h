@@ -22,8 +22,9 @@ struct FrameState {
     std::vector<Instance> instances;  ///< with surfaces numbered, moved flags set
     Lighting lighting;
     CameraState camera, camera_before;
-    bool cut = false;  ///< first frame, or a cut: no past
-    bool lighting_changed = false;
+    bool cut = false;                    ///< first frame, or a cut: no past
+    bool lighting_changed = false;       ///< of the light that is not sampled
+    bool sampled_light_changed = false;  ///< lamps, sun or ambient that are
     /// Those of this frame; empty while the scene's own are drawn, see materialsOf().
     std::vector<Material> materials;
     /// Bit s % 64 of word s / 64 is set for each surface s whose material differs from that of the

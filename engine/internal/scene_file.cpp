@@ -7,6 +7,7 @@
 #include "engine/internal/json_tracks.h"
 #include "engine/internal/obj.h"
 #include "engine/internal/obj_text.h"
+#include "engine/internal/scene_lights.h"
 #include "engine/internal/scene_materials.h"
 #include "engine/internal/tracks.h"
 #include "engine/load.h"
@@ -17,7 +18,6 @@ namespace still {
 namespace {
 
 constexpr size_t kMaxObjects = 65535;
-constexpr size_t kMaxPoints = 1000;
 constexpr size_t kMaxViews = 10000;
 constexpr double kMinFovDeg = 0.1, kMaxFovDeg = 170;
 
@@ -45,9 +45,6 @@ class SceneFileReader {
     void readCamera(const JsonCursor& cursor);
     void readCameraFile(const JsonCursor& file);
     void readViews(const JsonCursor& cursor);
-    void readSingleLight(const JsonCursor& cursor);
-    void readLights(const JsonCursor& cursor);
-    void readPoints(const JsonCursor& cursor);
     void readCuts(const JsonCursor& cursor);
     void chooseClipPlanes();
 
@@ -74,20 +71,6 @@ ObjectTracks readTransform(const JsonCursor& cursor) {
         tracks.scale = readScaleTrack(*scale);
     }
     return tracks;
-}
-
-Track<double> readIntensity(const JsonCursor& light) {
-    const auto intensity = light.find("intensity");
-    return intensity ? readNumberTrack(*intensity, 0, kMaxLight) : Track<double>{};
-}
-
-std::array<float, 3> colourOr(const JsonCursor& light, const std::array<float, 3>& fallback) {
-    const auto colour = light.find("colour");
-    return colour ? readColour(*colour) : fallback;
-}
-
-std::array<float, 3> toFloat(const glm::dvec3& v) {
-    return {float(v.x), float(v.y), float(v.z)};
 }
 
 /// The OBJ's mesh and materials, loaded once; those of mesh 0 after an error.
@@ -264,49 +247,6 @@ void SceneFileReader::readViews(const JsonCursor& cursor) {
     }
 }
 
-void SceneFileReader::readSingleLight(const JsonCursor& cursor) {
-    cursor.expectKeys({"type", "direction", "colour", "intensity"}, {"notes", "comment"});
-    if (const auto type = cursor.find("type"); type && type->text() != "directional") {
-        type->expected("\"directional\"");
-    }
-    SceneLights& lights = scene_.lights;
-    lights.sun.direction = toFloat(readDirection(cursor.require("direction")));
-    lights.sun.colour = colourOr(cursor, lights.sun.colour);
-    lights.sun_intensity = readIntensity(cursor);
-}
-
-void SceneFileReader::readPoints(const JsonCursor& cursor) {
-    for (const JsonCursor& at : cursor.items(0, kMaxPoints)) {
-        at.expectKeys({"position", "colour", "intensity"}, {"name", "notes", "comment"});
-        PointLight point;
-        point.position = toFloat(readPoint(at.require("position")));
-        point.colour = colourOr(at, {1, 1, 1});
-        scene_.lights.points.push_back(point);
-        scene_.lights.point_intensity.push_back(readIntensity(at));
-    }
-}
-
-void SceneFileReader::readLights(const JsonCursor& cursor) {
-    cursor.expectKeys({"ambient", "directional", "points"}, {"notes", "comment"});
-    SceneLights& lights = scene_.lights;
-    lights.ambient = {0, 0, 0};
-    lights.sun = {};
-    if (const auto ambient = cursor.find("ambient")) {
-        ambient->expectKeys({"colour", "intensity"}, {"notes", "comment"});
-        lights.ambient = colourOr(*ambient, {1, 1, 1});
-        lights.ambient_intensity = readIntensity(*ambient);
-    }
-    if (const auto sun = cursor.find("directional")) {
-        sun->expectKeys({"direction", "colour", "intensity"}, {"notes", "comment"});
-        lights.sun.direction = toFloat(readDirection(sun->require("direction")));
-        lights.sun.colour = colourOr(*sun, {1, 1, 1});
-        lights.sun_intensity = readIntensity(*sun);
-    }
-    if (const auto points = cursor.find("points")) {
-        readPoints(*points);
-    }
-}
-
 void SceneFileReader::readCuts(const JsonCursor& cursor) {
     for (const JsonCursor& at : cursor.items(0, SIZE_MAX)) {
         const int frame = at.integer(0, kMaxFrame);
@@ -339,9 +279,9 @@ Result<Scene> SceneFileReader::read() {
     if (light && lights) {
         light->refuse("expected either \"light\" or \"lights\"");
     } else if (light) {
-        readSingleLight(*light);
+        scene_.lights = readSingleLight(*light);
     } else if (lights) {
-        readLights(*lights);
+        scene_.lights = readLights(*lights);
     }
     if (const auto background = root_.find("background")) {
         scene_.background = readColour(*background);
@@ -366,14 +306,6 @@ Result<Scene> SceneFileReader::read() {
 }
 
 }  // namespace
-
-SceneLights defaultLights() {
-    SceneLights lights;
-    lights.ambient = {0.25f, 0.25f, 0.25f};
-    lights.sun.direction = toFloat(unit({-0.4, -1, -0.6}));
-    lights.sun.colour = {0.75f, 0.75f, 0.75f};
-    return lights;
-}
 
 Result<Scene> loadSceneFile(const std::filesystem::path& file,
                             const std::filesystem::path& cache_folder) {

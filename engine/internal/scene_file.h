@@ -16,8 +16,4 @@ Result<Scene> loadSceneFile(const std::filesystem::path& file,
 /// that.
 Result<Scene> parseSceneFile(const std::string& text, const std::filesystem::path& name);
 
-/// Daylight from the right, above and in front, for files that say nothing: a white surface that
-/// faces the sun is 0.25 + 0.75 = 1.
-SceneLights defaultLights();
-
 }  // namespace still

@@ -139,6 +139,40 @@ TEST_CASE("scene_file: the documented example's camera, lights and cuts", "[unit
     CHECK(loaded->cuts == std::vector<int>{30});
 }
 
+TEST_CASE("scene_file: the documented example's sampled light", "[unit][scene_file]") {
+    const auto loaded = loadScene(kData / "example.scene.json");
+    REQUIRE(loaded);
+    const SceneLights& lights = loaded->lights;
+    CHECK(lights.sun_shadow == SunShadow::traced);
+    CHECK(lights.sun_angle_deg == 2);
+    CHECK(lights.ambient_light == AmbientLight::traced_occlusion);
+    CHECK(lights.occlusion_distance == 0.5);
+    REQUIRE(lights.spheres.size() == 1);
+    CHECK(lights.spheres[0].position.keys[1].value == glm::dvec3(1, 4, 0));
+    CHECK(lights.spheres[0].radius == 0.25);
+    CHECK(lights.spheres[0].colour == std::array{1.0f, 0.5f, 0.25f});
+    CHECK(lights.spheres[0].intensity.keys[2].value == 0);
+    REQUIRE(lights.rectangles.size() == 1);
+    CHECK(lights.rectangles[0].centre.keys[0].value == glm::dvec3(0, 6, 0));
+    CHECK(lights.rectangles[0].edge_u == glm::dvec3(2, 0, 0));
+    CHECK(lights.rectangles[0].edge_v == glm::dvec3(0, 0, 1));
+    CHECK(lights.rectangles[0].intensity.keys[0].value == 12);
+}
+
+TEST_CASE("scene_file: without the keys of sampled light there is none", "[unit][scene_file]") {
+    const auto sampled = [](const std::string& lights) {
+        const auto scene =
+            loadSceneText(R"({"objects": [{"shape": "box"}], "lights": )" + lights + "}", "a");
+        REQUIRE(scene);
+        return scene->lights.sampled();
+    };
+    CHECK_FALSE(
+        sampled(R"({"ambient": {"bounce": false}, "directional": {"direction": [0,1,0]}})"));
+    CHECK_FALSE(sampled(R"({"spheres": [], "rectangles": []})"));
+    CHECK(sampled(R"({"ambient": {"bounce": true}})"));
+    CHECK(sampled(R"({"spheres": [{"position": [0, 1, 0], "radius": 1}]})"));
+}
+
 TEST_CASE("scene_file: one light is enough and makes white surfaces 1", "[unit][scene_file]") {
     const ScratchScene scratch(R"({"obj": "quad.obj", "light": {"direction": [0, -2, 0]}})");
     const auto scene = loadScene(scratch.file());
@@ -245,6 +279,28 @@ TEST_CASE("scene_file: wrong values are refused with their path", "[unit][scene_
           "scene.json: /lights/points/0/position/2: expected a number from -1e+09 to 1e+09, "
           "found \"3\"");
     CHECK(with(R"("views": {})").find("scene.json: /views: ") == 0);
+}
+
+TEST_CASE("scene_file: wrong sampled light is refused with its path", "[unit][scene_file]") {
+    const auto with = [](const std::string& lights) {
+        return errorOf(R"({"objects": [{"shape": "box"}], "lights": {)" + lights + "}}");
+    };
+    CHECK(with(R"("directional": {"direction": [0,1,0], "shadow": {"type": "soft"}})") ==
+          "scene.json: /lights/directional/shadow/type: expected \"traced\", found \"soft\"");
+    CHECK(with(R"("directional": {"direction": [0,1,0],
+                                  "shadow": {"type": "traced", "angle_deg": 91}})")
+              .find("scene.json: /lights/directional/shadow/angle_deg: ") == 0);
+    CHECK(with(R"("ambient": {"occlusion": {"type": "traced"}})") ==
+          "scene.json: /lights/ambient/occlusion: expected the key \"distance\"");
+    CHECK(with(R"("ambient": {"occlusion": {"type": "traced", "distance": 1}, "bounce": true})")
+              .find("scene.json: /lights/ambient/bounce: ") == 0);
+    CHECK(with(R"("spheres": [{"position": [0, 0, 0], "radius": 0}])")
+              .find("scene.json: /lights/spheres/0/radius: ") == 0);
+    const std::string rectangle = R"("rectangles": [{"centre": [0, 1, 0], "edge_u": [1, 0, 0], )";
+    CHECK(with(rectangle + R"("edge_v": [0, 0, 0]}])") ==
+          "scene.json: /lights/rectangles/0/edge_v: expected an edge with a length");
+    CHECK(with(rectangle + R"("edge_v": [1, 0, 1]}])") ==
+          "scene.json: /lights/rectangles/0/edge_v: expected an edge perpendicular to edge_u");
 }
 
 TEST_CASE("scene_file: wrong transforms are refused with their path", "[unit][scene_file]") {

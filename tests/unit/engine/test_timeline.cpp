@@ -154,6 +154,29 @@ TEST_CASE("timeline: intensities multiply the lights' colours", "[unit][timeline
     CHECK_FALSE(isStill(scene, {}));
 }
 
+TEST_CASE("timeline: sampled light changes apart from the light of colours", "[unit][timeline]") {
+    Scene scene = twoBoxes();
+    SceneLights& lights = scene.lights;
+    lights.sun.colour = {1, 1, 1};
+    lights.sun_intensity.keys = {{0, 1}, {5, 1}, {6, 2}};
+    lights.spheres = {{.position = {{{0, {0, 3, 0}}, {2, {2, 3, 0}}}}, .radius = 0.5}};
+    lights.rectangles = {{.centre = {{{0, {0, 3, 0}}}}, .intensity = {{{10, 1}, {11, 0}}}}};
+    const SphereLight moving = stateAt(scene, 1).lighting.sampled.spheres[0];
+    CHECK(moving.position == std::array{1.0f, 3.0f, 0.0f});
+    CHECK(moving.radius == 0.5f);
+    CHECK_FALSE(isStill(scene, {}));
+    const auto changes = [&](int frame) {
+        const FrameState state = stateAt(scene, frame);
+        return std::pair(state.lighting_changed, state.sampled_light_changed);
+    };
+    CHECK(changes(1) == std::pair(false, true));  // the ball of light moves
+    CHECK(changes(4) == std::pair(false, false));
+    CHECK(changes(6) == std::pair(true, false));   // the sun, which is not sampled
+    CHECK(changes(11) == std::pair(false, true));  // the rectangle goes out
+    lights.sun_shadow = SunShadow::traced;
+    CHECK(changes(6) == std::pair(false, true));
+}
+
 TEST_CASE("timeline: the camera looks along −z with OpenGL clip space", "[unit][timeline]") {
     Scene scene = twoBoxes();
     scene.camera.fov_y_deg.keys = {{0, 90}};
