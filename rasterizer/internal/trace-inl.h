@@ -1,0 +1,104 @@
+// Boxes and triangles, as many at once as there are lanes. Steps as in trace_reference.cpp.
+// Included once per target.
+
+HWY_BEFORE_NAMESPACE();
+namespace still::internal {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Eight = hn::CappedTag<float, kTreeWidth>;
+
+template <class D, class M>
+HWY_INLINE uint32_t maskBits(D d, M mask) {
+    uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return bits[0];
+}
+
+template <bool kWithNear>
+HWY_INLINE uint32_t boxMask(const BvhNode& node, const TraceRay& ray, float end, float* near_t) {
+    const Eight d;
+    const auto o_x = hn::Set(d, ray.origin[0]), o_y = hn::Set(d, ray.origin[1]);
+    const auto o_z = hn::Set(d, ray.origin[2]);
+    const auto i_x = hn::Set(d, ray.inverse[0]), i_y = hn::Set(d, ray.inverse[1]);
+    const auto i_z = hn::Set(d, ray.inverse[2]);
+    const float* near_x = node.bounds[ray.near_bound[0]][0];
+    const float* near_y = node.bounds[ray.near_bound[1]][1];
+    const float* near_z = node.bounds[ray.near_bound[2]][2];
+    const float* far_x = node.bounds[1 - ray.near_bound[0]][0];
+    const float* far_y = node.bounds[1 - ray.near_bound[1]][1];
+    const float* far_z = node.bounds[1 - ray.near_bound[2]][2];
+    uint32_t mask = 0;
+    for (size_t i = 0; i < size_t(kTreeWidth); i += hn::Lanes(d)) {
+        const auto at = [&](const float* bound, auto o, auto inverse) HWY_ATTR {
+            return hn::Mul(hn::Sub(hn::Load(d, bound + i), o), inverse);
+        };
+        auto entry = hn::Max(hn::Zero(d), at(near_x, o_x, i_x));
+        entry = hn::Max(hn::Max(entry, at(near_y, o_y, i_y)), at(near_z, o_z, i_z));
+        auto exit = hn::Min(hn::Set(d, end), at(far_x, o_x, i_x));
+        exit = hn::Min(hn::Min(exit, at(far_y, o_y, i_y)), at(far_z, o_z, i_z));
+        const auto meets = hn::Le(entry, hn::Mul(exit, hn::Set(d, kFarSlack)));
+        mask |= maskBits(d, meets) << i;
+        if constexpr (kWithNear) {
+            hn::Store(entry, d, near_t + i);
+        }
+    }
+    return mask;
+}
+
+HWY_INLINE uint32_t blockMask(const TriangleBlock& block, const TraceRay& ray, float end,
+                              BlockHits& hits) {
+    const Eight d;
+    const auto zero = hn::Zero(d);
+    const auto o_x = hn::Set(d, ray.origin[ray.kx]), o_y = hn::Set(d, ray.origin[ray.ky]);
+    const auto o_z = hn::Set(d, ray.origin[ray.kz]);
+    const auto s_x = hn::Set(d, ray.sx), s_y = hn::Set(d, ray.sy), s_z = hn::Set(d, ray.sz);
+    uint32_t mask = 0;
+    for (size_t i = 0; i < size_t(kTreeWidth); i += hn::Lanes(d)) {
+        const auto depth = [&](int c) HWY_ATTR {
+            return hn::Sub(hn::Load(d, block.corner[c][ray.kz] + i), o_z);
+        };
+        const auto sheared = [&](int c, int k, auto o, auto s, auto z) HWY_ATTR {
+            return hn::Sub(hn::Sub(hn::Load(d, block.corner[c][k] + i), o), hn::Mul(s, z));
+        };
+        const auto d0 = depth(0), d1 = depth(1), d2 = depth(2);
+        const auto x0 = sheared(0, ray.kx, o_x, s_x, d0), y0 = sheared(0, ray.ky, o_y, s_y, d0);
+        const auto x1 = sheared(1, ray.kx, o_x, s_x, d1), y1 = sheared(1, ray.ky, o_y, s_y, d1);
+        const auto x2 = sheared(2, ray.kx, o_x, s_x, d2), y2 = sheared(2, ray.ky, o_y, s_y, d2);
+        const auto u = hn::Sub(hn::Mul(x2, y1), hn::Mul(y2, x1));
+        const auto v = hn::Sub(hn::Mul(x0, y2), hn::Mul(y0, x2));
+        const auto w = hn::Sub(hn::Mul(x1, y0), hn::Mul(y1, x0));
+        const auto least = hn::Min(hn::Min(u, v), w), most = hn::Max(hn::Max(u, v), w);
+        const auto inside = hn::Or(hn::Ge(least, zero), hn::Le(most, zero));
+        if (hn::AllFalse(d, inside)) {
+            continue;
+        }
+        const auto det = hn::Add(hn::Add(u, v), w);
+        const auto t = hn::Add(hn::Add(hn::Mul(u, hn::Mul(s_z, d0)), hn::Mul(v, hn::Mul(s_z, d1))),
+                               hn::Mul(w, hn::Mul(s_z, d2)));
+        const auto ahead = hn::IfThenElse(hn::Lt(det, zero), hn::Neg(t), t);
+        const auto reached =
+            hn::And(hn::Gt(ahead, zero), hn::Le(ahead, hn::Mul(hn::Set(d, end), hn::Abs(det))));
+        const uint32_t bits = maskBits(d, hn::And(inside, reached));
+        if (bits != 0) {
+            hn::Store(hn::Div(t, det), d, hits.t + i);
+            hn::Store(hn::Div(v, det), d, hits.b1 + i);
+            hn::Store(hn::Div(w, det), d, hits.b2 + i);
+            mask |= bits << i;
+        }
+    }
+    return mask;
+}
+
+#include "rasterizer/internal/trace_walk-inl.h"
+
+}  // namespace
+
+TraceKernels traceHere() {
+    return {occludedRays, closestOfRays};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace still::internal
+HWY_AFTER_NAMESPACE();
