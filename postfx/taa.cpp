@@ -52,10 +52,11 @@ struct Taa::State {
     int tiles_x = 0;
     int sample_cap = 0;
     std::vector<TileMemory> tiles;
-    std::vector<uint8_t> wanted;       ///< plan()
-    std::vector<uint8_t> changed;      ///< changedTiles()
-    std::vector<uint32_t> change_age;  ///< empty until something changes
-    std::vector<uint32_t> turning;     ///< Job::turning; empty: null
+    std::vector<uint8_t> wanted;         ///< plan()
+    std::vector<uint8_t> changed;        ///< changedTiles()
+    std::vector<uint32_t> change_age;    ///< empty until something changes
+    std::vector<uint32_t> turning;       ///< Job::turning; empty: null
+    ImageView<const uint8_t> light_age;  ///< of the last resolve, where it matters
     int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
     bool first = true;         ///< no frame was resolved since the last reset
@@ -77,6 +78,7 @@ struct Taa::State {
     void begin(int new_width, int new_height, bool reset, const TaaSettings& settings);
     void noteChanges(const TaaFrame& frame, bool now);
     bool planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats);
+    bool noteLightAge(ImageView<const uint8_t> age, int past, Workers& workers);
     bool finished(int cap) const;
     void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
@@ -157,7 +159,7 @@ bool Taa::State::planTiles(std::span<const TileFacts> facts, bool shading_change
     bool any = false;
     for (size_t i = 0; i < tiles.size(); ++i) {
         TileMemory& tile = tiles[i];
-        tile.tested = shading_changed || facts[i].moved;
+        tile.tested = shading_changed || facts[i].moved || tile.young;
         tile.quiet = tile.tested ? 0 : tile.quiet;
         tile.keeps =
             first || facts[i].camera_moved || !tile.settled || tile.quiet < int(ring.size());
@@ -165,6 +167,31 @@ bool Taa::State::planTiles(std::span<const TileFacts> facts, bool shading_change
         any |= tile.keeps;
     }
     return any;
+}
+
+/// Which tiles have pixels that were lit otherwise within the last `past` frames; whether any has.
+bool Taa::State::noteLightAge(ImageView<const uint8_t> age, int past, Workers& workers) {
+    if (age.empty()) {
+        for (TileMemory& tile : tiles) {
+            tile.young = false;
+        }
+        return false;
+    }
+    assert(age.width == width && age.height == height && age.stride == shown_count.view().stride);
+    workers.parallelFor(int(tiles.size()), 1, [&](int begin, int end, int) {
+        for (int tile = begin; tile < end; ++tile) {
+            const TileRect rect = rectOf(tile);
+            uint8_t least = 255;
+            for (int y = rect.y0; y < rect.y1; ++y) {
+                const uint8_t* row = age.row(y) + rect.x0;
+                for (int x = 0; x < rect.x1 - rect.x0; ++x) {
+                    least = std::min(least, row[x]);
+                }
+            }
+            tiles[size_t(tile)].young = least < past;
+        }
+    });
+    return std::any_of(tiles.begin(), tiles.end(), [](const TileMemory& t) { return t.young; });
 }
 
 /// Without motion or change the picture stays.
@@ -221,6 +248,7 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     job.change_age = since_change < settings.ring ? change_age.data() : nullptr;
     job.start_age = started.ages();
     job.turning = turning.empty() ? nullptr : turning.data();
+    job.light_age = light_age.data;
     job.sample_cap = settings.sample_cap;
     job.settled = std::min(taa::kSettled, settings.sample_cap);
     job.camera_moved = !gbuffer.tiles.empty() && gbuffer.tiles[0].camera_moved;
@@ -342,7 +370,9 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     State& s = *state_;
     s.begin(gbuffer.width(), gbuffer.height(), frame.reset, settings);
     const bool shading_changed = !s.first && changesShading(frame);
-    if (!s.first && !shading_changed && allStill(gbuffer) && rest(settings)) {
+    const int past = std::max(settings.sample_cap, settings.ring);
+    const bool young = !s.first && s.noteLightAge(frame.light_age, past, workers);
+    if (!s.first && !shading_changed && !young && allStill(gbuffer) && rest(settings)) {
         return;
     }
     s.started.note(gbuffer, s.first, workers);
@@ -352,6 +382,7 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     } else if (first) {
         s.started.countAges(first, settings.ring);
     }
+    s.light_age = young ? frame.light_age : ImageView<const uint8_t>{};
     const Job job = s.makeJob(gbuffer, settings);
     const taa::TileKernels kernels = taa::tileKernels(settings.simd);
     workers.parallelFor(int(s.tiles.size()), 1, [&](int begin, int end, int) {

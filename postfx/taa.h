@@ -36,7 +36,8 @@ struct TaaFrame {
     /// Where this frame's samples lie, from the pixels' centres, −128 … 127.
     int jitter_x_fx8 = 0, jitter_y_fx8 = 0;
     /// Of each pixel, for how many frames its surface has been lit as it is now, 255 = long enough;
-    /// older samples of it do not count, and 0 leaves this frame's. Empty: all are.
+    /// older samples of it do not count, and 0 leaves this frame's. Empty: all are. Stays valid
+    /// until the next resolve(). plan() does not know it: whoever lights tiles anew asks for them.
     ImageView<const uint8_t> light_age{};
     /// False: the image of this frame is not asked for, and only what later ones need is made.
     bool looked_at = true;

@@ -182,6 +182,19 @@ HWY_INLINE bool disturbedLanes(const Job& job, const TileRect& tile, int y, uint
     return true;
 }
 
+/// Marks pixels whose sums hold samples from before their light changed; whether there are any.
+HWY_INLINE bool agedLanes(const Job& job, ptrdiff_t at, int width, uint8_t* flags) {
+    M any_old = hn::Ne(set(0), set(0));
+    for (int x = 0; x < width; x += int(hn::Lanes(D()))) {
+        const V age = loadBytes(job.light_age + at + x);
+        const M old = reaches(loadBytes(job.sums.count + at + x), hn::Add(age, set(1)));
+        const V flag = hn::IfThenElseZero(old, set(kChanged));
+        storeBytes(hn::Max(loadBytes(flags + x), flag), flags + x);
+        any_old = hn::Or(any_old, old);
+    }
+    return any(any_old);
+}
+
 /// Pixels of a row that differ in their counts or in what happens to them.
 HWY_INLINE void sumRow(const Job& job, ptrdiff_t at, int width, const uint8_t* disturbed,
                        bool restart, SumsResult& result) {
@@ -236,8 +249,13 @@ HWY_ATTR SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillne
         if (y + sums::kRowsAhead < tile.y1) {
             sums::prefetchRow(job, at + sums::kRowsAhead * job.stride);
         }
-        const bool calm =
-            stillness == Stillness::all || !sums::disturbedLanes(job, tile, y, disturbed);
+        bool calm = stillness == Stillness::all || !sums::disturbedLanes(job, tile, y, disturbed);
+        if (job.light_age != nullptr && stillness == Stillness::tested && !restart) {
+            if (calm) {
+                std::fill_n(disturbed, kTileSize, uint8_t{0});
+            }
+            calm &= !sums::agedLanes(job, at, width, disturbed);
+        }
         const int count = restart ? 0 : sums::countOfRow(job.sums.count + at, width);
         if (!calm || count < 0) {
             if (calm) {

@@ -18,7 +18,8 @@ struct SumsResult {
 };
 
 /// Adds this frame's samples to the sums, of which the settled ones are shown. `restart`: there are
-/// no sums yet. A pixel where something moved loses its sum; one where shading changed starts anew.
+/// no sums yet. A pixel where something moved loses its sum; one where shading changed, or light
+/// since its first sample, starts anew.
 SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillness stillness,
                                    bool restart) noexcept;
 

@@ -68,8 +68,11 @@ SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillne
         }
         for (int x = tile.x0; x < tile.x1; ++x) {
             const ptrdiff_t at = y * job.stride + x;
-            const uint8_t disturbance = disturbed[x - tile.x0];
+            uint8_t disturbance = disturbed[x - tile.x0];
             int count = restart ? 0 : job.sums.count[at];
+            if (job.light_age != nullptr && count > job.light_age[at]) {
+                disturbance = std::max(disturbance, kChanged);
+            }
             result.changed |= disturbance != 0 && count != 0;
             count = disturbance != 0 ? 0 : count;
             if (disturbance != kMoved && count < job.sample_cap) {

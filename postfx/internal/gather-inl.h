@@ -80,6 +80,7 @@ HWY_NOINLINE void lookBehind(const Job& job, int x, int y, MS pixels, VS bound, 
 
 /// lookAround() for a group, whose owners stand in this frame's record.
 HWY_NOINLINE void windowOf(const Job& job, int x, int y, MS pixels, WindowLanes& w) {
+    const DS d;
     const SlotIn& now = job.slot[0];
     const ptrdiff_t at = y * job.stride + x;
     const VS owner = load(now.owner + at), hint = load(job.hint + at);
@@ -109,6 +110,13 @@ HWY_NOINLINE void windowOf(const Job& job, int x, int y, MS pixels, WindowLanes&
     const VS speed = hn::Max(magnitude(w.owner.motion[0]), magnitude(w.owner.motion[1]));
     w.frames =
         hn::IfThenElse(hn::Gt(speed, set(kFast)), hn::Min(w.frames, set(kFastFrames)), w.frames);
+    w.lit_frames = set(kMaxRing);
+    if (job.light_age != nullptr) {
+        const hn::Rebind<uint8_t, DS> d8;
+        const VS age = hn::PromoteTo(d, hn::LoadU(d8, job.light_age + at));
+        w.lit_frames = hn::Add(age, set(1));
+        w.frames = hn::Min(w.frames, w.lit_frames);
+    }
     if (job.turning != nullptr && any(hn::Or(w.moved, inferred))) {
         const MS turns = hn::Ne(lookUp(job.turning, w.owner.surface), zero());
         w.frames = hn::IfThenElse(hn::And(turns, hn::Or(w.moved, inferred)),
@@ -240,7 +248,7 @@ HWY_INLINE void gatherGroup(const Job& job, int x, int y, bool sums_valid, const
         walker.start(x, y, window.far, window.apart);
         Way way;
         for (int k = 0; k < frames; ++k) {
-            stepWay(job, k, k + 1 == frames, window.far, set(kMaxRing), walker, way);
+            stepWay(job, k, k + 1 == frames, window.far, window.lit_frames, walker, way);
         }
         collect(job, x, y, way, window.far, FarRule(window), kept);
         separate = hn::And(fitLanes(job, kept, nullptr, never(), behind), window.apart);

@@ -41,7 +41,8 @@ struct Outlook {
 struct WindowLanes {
     LayerLanes owner, far;  ///< far: only where layered
     VS normal, slide;
-    VS frames;  ///< to follow
+    VS frames;      ///< to follow
+    VS lit_frames;  ///< in which the pixel was lit as it is now, this one included
     MS moved, layered, apart, flat;
     bool any_moved, any_layered, any_apart;
 };
@@ -97,7 +98,8 @@ HWY_NOINLINE void stepWay(const Job& job, int k, bool last, const LayerLanes& la
                           Walker& walker, Way& way) {
     const DS d;
     const SlotIn& slot = job.slot[k];
-    if (k == kFlatFrames || k == kTurningFrames || k == kCalmFrames) {
+    if ((job.light_age != nullptr && k > 0) || k == kFlatFrames || k == kTurningFrames ||
+        k == kCalmFrames) {
         walker.alive = hn::And(walker.alive, hn::Gt(limit, set(k)));
     }
     if (k > 0) {

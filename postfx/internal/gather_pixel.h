@@ -32,6 +32,7 @@ struct Window {
     bool apart = false;     ///< … that move differently …
     bool flat = false;      ///< one surface with next to no contrast
     int frames = kMaxRing;  ///< to follow: fewer where there is one surface with little contrast
+    int lit_frames = 256;   ///< in which it was lit as it is now, this one included
     int slide = 0;          ///< … by this much per frame (1/256 pixel, larger axis)
 };
 

@@ -85,6 +85,9 @@ Window lookAround(const Job& job, int x, int y, const Owner& seen) {
     if (may_turn && job.turning != nullptr && job.turning[seen.surface] != 0) {
         window.frames = std::min(window.frames, kTurningFrames);
     }
+    if (job.light_age != nullptr) {
+        window.lit_frames = job.light_age[y * job.stride + x] + 1;
+    }
     window.slide = slideOf(seen.motion, window.far.motion);
     window.apart = window.layered && seen.motion.x_fx8 != kNoHistory &&
                    window.far.motion.x_fx8 != kNoHistory && window.slide > kApart;
@@ -139,8 +142,8 @@ void noteEnd(Sightings* sightings, int age, Verdict reason) {
 /// that can be seen, where motion is the layer's way from the frame after to the sample's. It
 /// judges the sighting.
 template <class Visit>
-void follow(const Job& job, int x, int y, const Layer& layer, int frames, Sightings* sightings,
-            Visit&& visit) {
+void follow(const Job& job, int x, int y, const Layer& layer, int frames, int lit_frames,
+            Sightings* sightings, Visit&& visit) {
     Motion motion = layer.motion;
     int px = x * 256, py = y * 256;
     if (sightings != nullptr) {
@@ -148,6 +151,10 @@ void follow(const Job& job, int x, int y, const Layer& layer, int frames, Sighti
     }
     for (int k = 0; k < frames; ++k) {
         const SlotIn& slot = job.slot[k];
+        if (k >= lit_frames) {
+            noteEnd(sightings, k, Verdict::epoch);
+            return;
+        }
         if (k > 0) {
             if (motion.x_fx8 == kNoHistory) {
                 noteEnd(sightings, k, Verdict::no_history);
@@ -214,7 +221,7 @@ void addTap(Taps& taps, const SlotIn& slot, ptrdiff_t at, const Sighting& s, boo
 /// The farther layer's samples, where the owner did not hide it.
 void collectFar(const Job& job, int x, int y, const Window& window, Taps& taps,
                 Sightings* sightings) {
-    follow(job, x, y, window.far, std::min(kFarFrames, job.frames), sightings,
+    follow(job, x, y, window.far, std::min(kFarFrames, job.frames), window.lit_frames, sightings,
            [&](Sighting& s, const SlotIn& slot, ptrdiff_t at, Motion) {
                const int surface = surfaceAt(slot, at);
                const int depth = depthAt(slot, at);
@@ -270,8 +277,8 @@ Verdict judgeOwn(const Job& job, const Window& window, int k, TapLayer place, co
 /// Samples along the owner's way: its own, and what was seen beside it.
 void collectOwn(const Job& job, int x, int y, const Window& window, Taps& taps,
                 Sightings* sightings) {
-    follow(job, x, y, window.owner, std::min(window.frames, job.frames), sightings,
-           [&](Sighting& s, const SlotIn& slot, ptrdiff_t at, Motion motion) {
+    follow(job, x, y, window.owner, std::min(window.frames, job.frames), window.lit_frames,
+           sightings, [&](Sighting& s, const SlotIn& slot, ptrdiff_t at, Motion motion) {
                const int depth = depthAt(slot, at);
                s.layer = placeOf(window.owner, s.age, surfaceAt(slot, at), depth);
                if (s.age > 0) {

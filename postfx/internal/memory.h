@@ -46,6 +46,7 @@ struct TileMemory {
     bool settled = false;   ///< … and all shown
     bool changed = true;    ///< the last frame changed the picture
     bool tested = true;     ///< something moved or changed here in this frame
+    bool young = false;     ///< light has not been as it is for as long as the past goes back
     bool keeps = true;      ///< this frame's samples go into the ring
     bool adds = false;      ///< … and were added to its sums
     int quiet = 0;          ///< frames kept since it was tested, up to the ring's length

@@ -85,6 +85,8 @@ struct Job {
     const uint32_t* start_age = nullptr;
     /// 1 for surfaces of objects that turn or bend, by surface number; null when there are none.
     const uint32_t* turning = nullptr;
+    /// TaaFrame::light_age; null when light is long as it is.
+    const uint8_t* light_age = nullptr;
     int sample_cap = 64;
     int settled = 8;  ///< min(kSettled, sample_cap)
     bool camera_moved = false;
