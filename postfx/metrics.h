@@ -1,7 +1,7 @@
 #pragma once
 // How far two pictures are apart, or two sequences: squared error, PSNR, largest difference, SSIM,
-// sharpness, flicker, ghosts, recovery. Exact or in a written order, so the numbers are the same on
-// every machine. FLIP is in postfx/flip.h.
+// sharpness, flicker, ghosts, recovery, residues, trails. Exact or in a written order, so the
+// numbers are the same on every machine. FLIP is in postfx/flip.h.
 
 #include <cstdint>
 #include <span>
@@ -97,5 +97,38 @@ uint64_t ghostPixels(ImageView<const Rgb8> output, ImageView<const Rgb8> referen
 /// rmse_after[0] belongs to the frame of the event, so 0 means that it left no trace, 1 that it was
 /// cured one frame later; all of them when the error never settles. Units: rmse(), 8-bit codes.
 int recoveryFrames(std::span<const double> rmse_after, double settled_rmse);
+
+/// How much of the picture `before` an event is still seen in `picture` though it should look like
+/// `after`: the share s for which after + s · (before − after) comes nearest to it, least squares
+/// over all channels, so that errors of other kinds cancel. 0 when the event changed nothing. The
+/// views have equal sizes.
+double residualShare(ImageView<const Rgb8> picture, ImageView<const Rgb8> before,
+                     ImageView<const Rgb8> after);
+
+/// Mean of pictures of the same frame with different random numbers: noise fades, what a method
+/// gets wrong every time stays.
+class PictureMean {
+  public:
+    /// All of the first one's size.
+    void add(ImageView<const Rgb8> picture);
+    /// Of one channel (0 … 2), 8-bit codes. After at least one add().
+    double at(int x, int y, int channel) const;
+
+  private:
+    int width_ = 0;
+    std::vector<uint32_t> sums_;  ///< channel by channel
+    uint32_t pictures_ = 0;
+};
+
+/// A channel that was so far away from what it is now was passed by something, codes …
+constexpr int kTrailPassed = 24;
+/// … and what passed it is gone when it is now as near as this to the reference before.
+constexpr int kTrailGone = 2;
+
+/// What things that passed leave behind under a camera that stands: the most, in 8-bit codes, by
+/// which a channel is off towards what it was, wherever something has passed and is gone.
+/// `references` show the scene at some instants in order, the last one that of `mean`; 0 when they
+/// are fewer than three.
+double trailCodes(std::span<const ImageView<const Rgb8>> references, const PictureMean& mean);
 
 }  // namespace still

@@ -27,6 +27,8 @@ struct AtlasCase {
     std::optional<int> event_frame{};    ///< recovery is counted from here
     std::optional<int> resize_frame{};   ///< earlier frames are rendered at half the size
     bool slow = false;                   ///< left out unless asked for by name
+    /// Things pass under a camera that stands, and what they leave behind is measured.
+    bool trail = false;
 };
 
 /// All cases, in the order of the issue they answer. Scenes are made when asked for.

@@ -17,7 +17,7 @@
 namespace still::command {
 namespace {
 
-constexpr const char* kKind = "cell 2";
+constexpr const char* kKind = "cell 3";
 constexpr const char* kRaceKind = "race 1";
 
 Outcome<std::vector<const AtlasCase*>> parseCases(const std::string& text) {

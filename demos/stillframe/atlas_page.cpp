@@ -84,6 +84,9 @@ const metrics = {
   ghost_area: {text: "ghost area, % of the picture", digits: 3, scale: 100, better: v => -v},
   recovery_frames: {text: "frames to recover from an event", digits: 0, better: v => -v},
   sharpness: {text: "sharpness, 1 is the reference's", digits: 3, better: v => -Math.abs(v - 1)},
+  residual: {text: "left of the past 3 frames after an event, %", digits: 1, scale: 100,
+    better: v => -Math.abs(v)},
+  trail: {text: "trail, of 255", digits: 1, better: v => -v},
   ms: {text: "milliseconds a frame, one thread", digits: 2, better: v => -v},
 };
 const $ = selector => document.querySelector(selector);

@@ -35,6 +35,8 @@ Json measuresJson(const SegmentMeasures& m) {
             {"ghost_area", orNull(m.ghost_area)},
             {"recovery_frames", orNull(m.recovery_frames)},
             {"sharpness", orNull(m.sharpness)},
+            {"residual", orNull(m.residual)},
+            {"trail", orNull(m.trail)},
             {"ms", m.ms}};
 }
 
@@ -129,12 +131,14 @@ std::string atlasJson(const AtlasReport& report) {
 
 std::string atlasCsv(const AtlasReport& report) {
     std::string text =
-        "scene,segment,preset,psnr,ssim,flip,flicker,ghost_area,recovery_frames,sharpness,ms\n";
+        "scene,segment,preset,psnr,ssim,flip,flicker,ghost_area,recovery_frames,sharpness,"
+        "residual,trail,ms\n";
     for (const AtlasResult& result : report.results) {
         const SegmentMeasures& m = result.measures;
         text += result.scene + "," + result.segment + "," + result.preset;
         const std::optional<double> values[] = {
-            m.psnr, m.ssim, m.flip, m.flicker, m.ghost_area, m.recovery_frames, m.sharpness, m.ms};
+            m.psnr,      m.ssim,     m.flip,  m.flicker, m.ghost_area, m.recovery_frames,
+            m.sharpness, m.residual, m.trail, m.ms};
         for (const std::optional<double>& value : values) {
             text += field(value);
         }

@@ -26,10 +26,10 @@ struct AtlasReport {
 };
 
 /// {"width", "height", "results": [{"scene", "segment", "preset", "psnr", "ssim", "flip",
-/// "flicker", "ghost_area", "recovery_frames", "sharpness", "ms", "frames": [{"frame", "rms",
-/// "flip"} …]} …]}, one result a line; null where a measure does not apply. With a base, results
-/// have "time_share" too, and at the end "versus" and "summary": [{"segment", "preset", "cells",
-/// "psnr_db", "flip", "time", "worst_scene", "worst_db"} …] stand.
+/// "flicker", "ghost_area", "recovery_frames", "sharpness", "residual", "trail", "ms", "frames":
+/// [{"frame", "rms", "flip"} …]} …]}, one result a line; null where a measure does not apply. With
+/// a base, results have "time_share" too, and at the end "versus" and "summary": [{"segment",
+/// "preset", "cells", "psnr_db", "flip", "time", "worst_scene", "worst_db"} …] stand.
 std::string atlasJson(const AtlasReport& report);
 
 /// The same without frames; an empty field is null.

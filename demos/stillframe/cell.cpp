@@ -9,6 +9,9 @@
 namespace still::command {
 namespace {
 
+/// From one run to the next: as many as no run has, and no period of the jitter.
+constexpr int kTrailRunSamples = 509;
+
 const CaseFrame* findFrame(const std::vector<CaseFrame>& frames, int frame) {
     const auto found = std::find_if(frames.begin(), frames.end(),
                                     [&](const CaseFrame& each) { return each.frame == frame; });
@@ -35,7 +38,7 @@ class CellRun {
           mode_(mode),
           loop_(*prepared.atlas, prepared.scene, mode.settings(prepared.view)) {
         for (const AtlasSegment& segment : prepared.atlas->segments) {
-            meters_.emplace_back(segment);
+            meters_.emplace_back(segment, prepared.atlas->event_frame);
         }
     }
     void run() {
@@ -55,6 +58,7 @@ class CellRun {
     /// Samples that a history has taken when it comes to the frame.
     int samplesBefore(int frame) const;
     std::vector<double> startedAnew(size_t segment) const;
+    double trail(size_t segment) const;
 
     const PreparedCase& prepared_;
     const Mode& mode_;
@@ -115,12 +119,43 @@ std::vector<double> CellRun::startedAnew(size_t segment) const {
     return errors;
 }
 
+/// What is left behind in the segment's frames, in the mean of several runs.
+double CellRun::trail(size_t segment) const {
+    const std::vector<CaseFrame>& compared = prepared_.segments[segment];
+    std::vector<PictureMean> means(compared.size());
+    for (int run = 0; run < kTrailRuns; ++run) {
+        FrameSettings settings = mode_.settings(prepared_.view);
+        settings.first_sample = run * kTrailRunSamples;
+        CaseLoop loop(*prepared_.atlas, prepared_.scene, settings);
+        const int first = lastCut(prepared_.scene, {}, compared.front().frame);
+        for (int frame = first; frame <= compared.back().frame; ++frame) {
+            const CaseFrame* wanted = findFrame(compared, frame);
+            if (wanted != nullptr || mode_.temporal()) {
+                const FrameResult result = loop.render(frame);
+                if (wanted != nullptr) {
+                    means[size_t(wanted - compared.data())].add(result.output);
+                }
+            }
+        }
+    }
+    std::vector<ImageView<const Rgb8>> references;
+    double most = 0;
+    for (size_t i = 0; i < compared.size(); ++i) {
+        references.push_back(compared[i].reference.picture.view());
+        most = std::max(most, trailCodes(references, means[i]));
+    }
+    return most;
+}
+
 Outcome<std::vector<SegmentMeasures>> CellRun::finish() {
     std::vector<SegmentMeasures> results;
     for (size_t i = 0; i < meters_.size(); ++i) {
         auto measures = meters_[i].finish(startedAnew(i));
         if (!measures) {
             return tl::make_unexpected(measures.error());
+        }
+        if (prepared_.atlas->trail) {
+            measures->trail = trail(i);
         }
         results.push_back(std::move(*measures));
     }

@@ -15,6 +15,11 @@ namespace still::command {
 /// PSNR of pictures that are equal or nearly so, so that it can be averaged and compared.
 constexpr double kBestPsnrDb = 100;
 
+/// An event has had so many frames when its residual is measured …
+constexpr int kResidualFrames = 3;
+/// … and a case is run so many times with other random numbers for its trails.
+constexpr int kTrailRuns = 16;
+
 /// How far one frame is from its reference.
 struct FrameError {
     int frame = 0;
@@ -35,6 +40,11 @@ struct SegmentMeasures {
     /// method, with the same samples, started anew at the event.
     std::optional<double> recovery_frames;
     std::optional<double> sharpness;  ///< mean over the frames; needs references that are not flat
+    /// Of what was seen before the case's event, kResidualFrames after it; see residualShare().
+    std::optional<double> residual;
+    /// The most that any frame has, codes; the mean of kTrailRuns runs is looked at. See
+    /// trailCodes().
+    std::optional<double> trail;
     /// Median processor time of a frame, one thread, while other cells run beside it. The chart
     /// measures time properly.
     double ms = 0;

@@ -95,6 +95,8 @@ void visitMeasures(Stream& stream, Measures& m, Visit&& visit) {
     visit(stream, m.ghost_area);
     visit(stream, m.recovery_frames);
     visit(stream, m.sharpness);
+    visit(stream, m.residual);
+    visit(stream, m.trail);
     visit(stream, m.ms);
     visit(stream, m.crop_frame);
     visit(stream, m.crop_x);

@@ -98,6 +98,20 @@ void SegmentMeter::compare(const CaseFrame& frame, ImageView<const Rgb8> picture
     flicker_.add(reference, picture);
     crop_.look(frame.frame, picture, reference);
     countGhosts(frame, picture);
+    measureResidual(frame, picture);
+}
+
+void SegmentMeter::measureResidual(const CaseFrame& frame, ImageView<const Rgb8> picture) {
+    if (!event_frame_) {
+        return;
+    }
+    const ImageView<const Rgb8> reference = frame.reference.picture.view();
+    if (frame.frame == *event_frame_ - 1) {
+        before_event_ = reference;
+    }
+    if (frame.frame == *event_frame_ + kResidualFrames && !before_event_.empty()) {
+        sums_.residual = residualShare(picture, before_event_, reference);
+    }
 }
 
 void SegmentMeter::countGhosts(const CaseFrame& frame, ImageView<const Rgb8> picture) {

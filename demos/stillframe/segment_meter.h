@@ -14,10 +14,12 @@ double coarseRms(ImageView<const Rgb8> picture, ImageView<const Rgb8> reference)
 /// Takes the frames of one segment in order.
 class SegmentMeter {
   public:
-    explicit SegmentMeter(const AtlasSegment& segment) : segment_(segment) {}
+    /// `event_frame`: the case's.
+    SegmentMeter(const AtlasSegment& segment, std::optional<int> event_frame)
+        : segment_(segment), event_frame_(event_frame) {}
 
     void addTime(double ms) { times_ms_.push_back(ms); }
-    /// `cut`: the frame is not expected to resemble the one before.
+    /// `cut`: the frame is not expected to resemble the one before. `frame` must stay.
     void compare(const CaseFrame& frame, ImageView<const Rgb8> picture, bool cut);
     /// After at least one time and one comparison. `anew`: coarseRms() of the same method started
     /// at the case's event, of the compared frames from there on; empty when there is no event
@@ -26,8 +28,11 @@ class SegmentMeter {
 
   private:
     void countGhosts(const CaseFrame& frame, ImageView<const Rgb8> picture);
+    void measureResidual(const CaseFrame& frame, ImageView<const Rgb8> picture);
 
     const AtlasSegment& segment_;
+    std::optional<int> event_frame_;
+    ImageView<const Rgb8> before_event_{};  ///< reference
     SegmentMeasures sums_;
     PixelError error_;
     FlickerMeter flicker_;
