@@ -126,7 +126,9 @@ struct Denoiser::State {
     std::array<PastImages, 2> past;
     int cursor = 0;
     bool has_past = false;
+    int since_change = 0;  ///< frames since a reset or since anything changed, held at kNoBound
     std::array<FilterImages, 2> filtered;
+    std::array<Image<float>, 2> step;
     std::array<std::vector<BlockChange>, kParts> change;
     Image<uint8_t> light_age;
 
@@ -160,6 +162,9 @@ void Denoiser::State::resize(int new_width, int new_height) {
     }
     for (FilterImages& images : filtered) {
         images.resize(width, height);
+    }
+    for (Image<float>& image : step) {
+        image.resize(width, height);
     }
     light_age.resize(width, height);
     has_past = false;
@@ -200,11 +205,16 @@ Job Denoiser::State::makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, b
         job.change[p] = changed ? change[size_t(p)].data() : nullptr;
     }
     job.blocks_x = (width + kLightBlock - 1) / kLightBlock;
+    job.step[0] = step[0].view().data;
+    job.step[1] = step[1].view().data;
     job.has_past = has_past;
     job.before = past[size_t(1 - cursor)].pointers();
     job.now = past[size_t(cursor)].pointers();
     job.first = filtered[0].pointers();
     job.light_age = light_age.view().data;
+    if (since_change >= denoising::kYoungFrames) {
+        job.oldest = std::min(255, since_change - denoising::kYoungFrames + denoising::kYoungKept);
+    }
     return job;
 }
 
@@ -222,6 +232,7 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
         s.noteChange(frame.change, workers);
     }
     s.cursor = 1 - s.cursor;
+    s.since_change = changed || !s.has_past ? 0 : std::min(s.since_change + 1, denoising::kLongest);
     const Job job = s.makeJob(gbuffer, noisy, changed);
     s.eachTile(workers, [&](const TileRect& tile) { denoising::guidesReference(job, tile); });
     s.eachTile(workers, [&](const TileRect& tile) { denoising::blendReference(job, tile); });

@@ -48,12 +48,14 @@ struct Job {
     const Motion* motion = nullptr;
     const uint16_t* depth_before = nullptr;
     const uint16_t* noisy[kChannels] = {};
+    float* step[2] = {};  ///< of depth from pixel to pixel, on the pixel's surface
     bool has_past = false;
     Past before, now;
     const BlockChange* change[kParts] = {};  ///< null: nothing changed
     int blocks_x = 0;
     FilterPlanes first;  ///< what the first pass of the filter reads
     uint8_t* light_age = nullptr;
+    int oldest = 255;  ///< of light_age
 };
 
 }  // namespace still::denoising

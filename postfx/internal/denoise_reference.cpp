@@ -63,20 +63,6 @@ void divide(Found& found) {
     }
 }
 
-/// The surface's step of logDepth16 to the nearest neighbour, larger axis.
-int slopeAt(const Job& job, int x, int y) {
-    const ptrdiff_t at = y * job.stride + x;
-    const int depth = logDepth16(job.depth[at]);
-    const auto step = [&](ptrdiff_t a, ptrdiff_t b) {
-        return std::min(std::abs(int(logDepth16(job.depth[a])) - depth),
-                        std::abs(int(logDepth16(job.depth[b])) - depth));
-    };
-    const int sx = step(x > 0 ? at - 1 : at + 1, x + 1 < job.width ? at + 1 : at - 1);
-    const int sy = step(y > 0 ? at - job.stride : at + job.stride,
-                        y + 1 < job.height ? at + job.stride : at - job.stride);
-    return std::max(sx, sy);
-}
-
 Found findPast(const Job& job, int x, int y) {
     Found found;
     const ptrdiff_t at = y * job.stride + x;
@@ -84,8 +70,9 @@ Found findPast(const Job& job, int x, int y) {
     if (!job.has_past || motion.x_fx8 == kNoHistory) {
         return found;
     }
-    Wanted wanted{job.now.surface[at], job.depth_before[at],
-                  kDepthTolerance + kSlopeFactor * slopeAt(job, x, y)};
+    Wanted wanted{
+        job.now.surface[at], job.depth_before[at],
+        pastTolerance(std::bit_cast<float>(job.depth[at]), job.step[0][at], job.step[1][at])};
     for (int c = 0; c < 3; ++c) {
         wanted.normal[c] = job.now.normal[c][at];
     }
@@ -150,7 +137,7 @@ void blend(const Job& job, int x, int y) {
         return;
     }
     const Found found = findPast(job, x, y);
-    int light_age = 255;
+    int light_age = job.oldest;
     for (int p = 0; p < kParts; ++p) {
         const BlockChange change = changeAt(job, p, x, y);
         const float longest = float(found.exact ? kLongest : kLongestMoving);
@@ -163,16 +150,16 @@ void blend(const Job& job, int x, int y) {
             const float past = found.light[3 * p + c] * change.ratio;
             const float mean = past + (sample[c] - past) * share;
             job.now.light[3 * p + c][at] = mean;
-            job.first.light[3 * p + c][at] = uint16_t(roundToInt(std::min(mean, 65535.0f)));
+            job.first.light[3 * p + c][at] = toPlane(mean);
         }
         const float bright = luminance(sample[0], sample[1], sample[2]);
         const float past_square = found.square[p] * (change.ratio * change.ratio);
         job.now.square[p][at] = past_square + (bright * bright - past_square) * share;
-        job.now.count[p][at] = uint8_t(roundToInt(1.0f / share));
+        job.now.count[p][at] = uint8_t(int(1.0f / share + 0.5f));
         const float drift = std::max(std::abs(change.ratio - 1.0f), change.unsure);
         const float bound = drift > 0 ? std::min(255.0f, kAgeDrift / drift) : 255.0f;
         const float age = std::min(std::min(found.age[p] + 1, 255.0f), bound);
-        job.now.age[p][at] = uint8_t(roundToInt(found.weight > 0 ? age : 255.0f));
+        job.now.age[p][at] = uint8_t(int((found.weight > 0 ? age : 255.0f) + 0.5f));
         light_age = std::min(light_age, int(job.now.age[p][at]));
     }
     job.light_age[at] = uint8_t(light_age);
@@ -209,6 +196,18 @@ float variedAround(const Job& job, int part, int x, int y) {
     return std::max(0.0f, squares / total - mean * mean);
 }
 
+/// Reversed depth is flat over a flat surface: the smaller of the differences to both sides is the
+/// surface's own.
+float stepAt(const Job& job, ptrdiff_t at, ptrdiff_t next, bool first, bool last) {
+    const auto z = [&](ptrdiff_t i) { return std::bit_cast<float>(job.depth[i]); };
+    if (first && last) {
+        return 0;
+    }
+    const float ahead = last ? z(at) - z(at - next) : z(at + next) - z(at);
+    const float back = first ? ahead : z(at) - z(at - next);
+    return std::abs(back) < std::abs(ahead) ? back : ahead;
+}
+
 }  // namespace
 
 void guidesReference(const Job& job, const TileRect& tile) noexcept {
@@ -218,10 +217,13 @@ void guidesReference(const Job& job, const TileRect& tile) noexcept {
             job.now.surface[at] = job.id[at] & kSurfaceMask;
             job.now.depth[at] = logDepth16(job.depth[at]);
             const NormalVector n = decodeOctahedral(job.normal[at]);
-            const float scale = 1.0f / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+            const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+            const float scale = job.now.surface[at] == 0 ? 0.0f : 1.0f / length;
             job.now.normal[0][at] = n.x * scale;
             job.now.normal[1][at] = n.y * scale;
             job.now.normal[2][at] = n.z * scale;
+            job.step[0][at] = stepAt(job, at, 1, x == 0, x + 1 == job.width);
+            job.step[1][at] = stepAt(job, at, job.stride, y == 0, y + 1 == job.height);
         }
     }
 }
@@ -255,26 +257,6 @@ void varianceReference(const Job& job, const TileRect& tile) noexcept {
 
 namespace {
 
-struct Plane {
-    float z = 0, step_x = 0, step_y = 0;
-};
-
-/// Reversed depth is flat over a flat surface: the smaller of the two differences on each axis is
-/// the surface's own.
-Plane planeAt(const Job& job, int x, int y) {
-    const ptrdiff_t at = y * job.stride + x;
-    const auto z = [&](ptrdiff_t i) { return std::bit_cast<float>(job.depth[i]); };
-    const float here = z(at);
-    const auto smaller = [&](float back, float ahead) {
-        return std::abs(back) < std::abs(ahead) ? back : ahead;
-    };
-    const float left = x > 0 ? here - z(at - 1) : z(at + 1) - here;
-    const float right = x + 1 < job.width ? z(at + 1) - here : left;
-    const float up = y > 0 ? here - z(at - job.stride) : z(at + job.stride) - here;
-    const float down = y + 1 < job.height ? z(at + job.stride) - here : up;
-    return {here, smaller(left, right), smaller(up, down)};
-}
-
 /// Variance of the 3×3 around a pixel.
 float smoothVariance(const Job& job, const float* variance, int x, int y) {
     constexpr float kAxis[3] = {0.25f, 0.5f, 0.25f};
@@ -297,20 +279,10 @@ float luminanceOf(const FilterPlanes& planes, int part, ptrdiff_t at) {
 void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out, int pass, int x,
                  int y) {
     const ptrdiff_t at = y * job.stride + x;
-    if (job.now.surface[at] == 0) {
-        for (int c = 0; c < kChannels; ++c) {
-            out.light[c][at] = 0;
-        }
-        for (int p = 0; p < kParts; ++p) {
-            out.variance[p][at] = 0;
-        }
-        return;
-    }
     const int stride = 1 << pass;
-    const Plane plane = planeAt(job, x, y);
-    const float plane_scale =
-        1.0f / (plane.z * kPlaneReach * float(stride) * 0.5f +
-                (std::abs(plane.step_x) + std::abs(plane.step_y)) * float(stride) * 0.25f + 1e-12f);
+    const float depth = std::bit_cast<float>(job.depth[at]);
+    const float step_x = job.step[0][at] * float(stride), step_y = job.step[1][at] * float(stride);
+    const float plane_scale = planeScale(depth, step_x, step_y, float(stride));
     float here[kParts], scale[kParts];
     float total[kParts], square[kParts], sum[kChannels];
     constexpr float kCentre = kWindow[0] * kWindow[0];
@@ -323,22 +295,18 @@ void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out
             sum[c] = kCentre * float(in.light[c][at]);
         }
     }
-    for (int j = -2; j <= 2; ++j) {
-        for (int i = -2; i <= 2; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
             const int nx = x + i * stride, ny = y + j * stride;
             if ((i == 0 && j == 0) || !inside(job, nx, ny)) {
                 continue;
             }
             const ptrdiff_t from = ny * job.stride + nx;
-            if (job.now.surface[from] == 0) {
-                continue;
-            }
             const float dx = job.now.normal[0][at] - job.now.normal[0][from];
             const float dy = job.now.normal[1][at] - job.now.normal[1][from];
             const float dz = job.now.normal[2][at] - job.now.normal[2][from];
-            const float off =
-                std::bit_cast<float>(job.depth[from]) -
-                (plane.z + float(i * stride) * plane.step_x + float(j * stride) * plane.step_y);
+            const float off = std::bit_cast<float>(job.depth[from]) -
+                              (depth + float(i) * step_x + float(j) * step_y);
             const float shape = kWindow[std::abs(i)] * kWindow[std::abs(j)] *
                                 fallOff((dx * dx + dy * dy + dz * dz) * (1.0f / kNormalReach)) *
                                 fallOff(std::abs(off) * plane_scale);
@@ -357,7 +325,7 @@ void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out
         const float share = 1.0f / total[p];
         out.variance[p][at] = square[p] * (share * share);
         for (int c = 3 * p; c < 3 * p + 3; ++c) {
-            out.light[c][at] = uint16_t(roundToInt(sum[c] * share));
+            out.light[c][at] = toPlane(sum[c] * share);
         }
     }
 }

@@ -15,7 +15,7 @@ namespace still::denoising {
 /// A sample of the past belongs to the surface when its logDepth16 differs by at most this much
 /// from the expected one, plus this multiple of the surface's step to its neighbour …
 constexpr int kDepthTolerance = 48;
-constexpr int kSlopeFactor = 2;
+constexpr float kSlopeFactor = 8192.0f;
 /// … and the cosine between the normals is at least this.
 constexpr float kPastCosine = 0.9f;
 /// Weight that the 2×2 samples of the past must have together, of 65536; else 3×3 are looked at.
@@ -24,6 +24,10 @@ constexpr int kEnoughPast = 6554;
 /// Samples that a mean is worth at most: at rest, and where it was resampled.
 constexpr int kLongest = 255;
 constexpr int kLongestMoving = 32;
+/// The first so many frames are still noisy: TAA forgets its sums of them as soon as they are over,
+/// and all but so many of them.
+constexpr int kYoungFrames = 16;
+constexpr int kYoungKept = 8;
 /// Before so many samples variance comes from the surroundings.
 constexpr int kShort = 4;
 
@@ -35,6 +39,17 @@ inline float luminance(float red, float green, float blue) {
     return 0.2126f * red + 0.7152f * green + 0.0722f * blue;
 }
 
+/// Light ≥ 0 as planes keep it, rounded half up.
+inline uint16_t toPlane(float light) {
+    return uint16_t(int(std::min(light, 65535.0f) + 0.5f));
+}
+
+/// Of logDepth16, on a surface whose reversed depth grows by these steps per pixel.
+inline int pastTolerance(float depth, float step_x, float step_y) {
+    const float steep = std::max(std::abs(step_x), std::abs(step_y)) / (depth + 1e-12f);
+    return kDepthTolerance + int(std::min(steep, 1.0f) * kSlopeFactor);
+}
+
 /// 1 at 0, 0 from 1 on.
 inline float fallOff(float x) {
     const float rest = std::max(0.0f, 1.0f - x);
@@ -44,12 +59,21 @@ inline float fallOff(float x) {
 /// Passes of the filter; pass k takes every 2^k-th pixel.
 constexpr int kPasses = 5;
 /// Of the filter's 5 × 5 window, each axis, from the centre.
-constexpr float kWindow[3] = {0.375f, 0.25f, 0.0625f};
+constexpr float kWindow[3] = {0.5f, 0.25f, 0.0f};
 /// Luminances may differ by so many standard deviations.
 constexpr float kSigmas = 4.0f;
 /// Squared distance of normals at which nothing is taken.
 constexpr float kNormalReach = 0.12f;
 /// Distance from the pixel's plane at which nothing is taken, relative to the depth.
-constexpr float kPlaneReach = 0.02f;
+constexpr float kPlaneReach = 0.01f;
+/// … or to the surface's slope.
+constexpr float kSlopeReach = 0.25f;
+
+/// 1 / distance from the plane through a pixel at which nothing is taken. Steps are those of
+/// `stride` pixels.
+inline float planeScale(float depth, float step_x, float step_y, float stride) {
+    return 1.0f / (depth * (kPlaneReach * stride) +
+                   (std::abs(step_x) + std::abs(step_y)) * kSlopeReach + 1e-12f);
+}
 
 }  // namespace still::denoising
