@@ -15,7 +15,11 @@ constexpr int kRowGrain = 16;
 
 }  // namespace
 
+/// At the output's size.
 ColourPlanes FrameLoop::State::resolved() const {
+    if (enlarges()) {
+        return {enlarged.red.view(), enlarged.green.view(), enlarged.blue.view()};
+    }
     return gathers() ? taa.colour() : laboratory.colour();
 }
 
@@ -39,8 +43,9 @@ ImageView<const uint8_t> FrameLoop::State::fullConfidence() {
 }
 
 void FrameLoop::State::sharpenResolved() {
-    sharpen(resolved(), fullConfidence(), settings.policy.sharpness_q15, resizeFiltered(),
-            settings.simd, workers);
+    const auto known = enlarges() ? ImageView<const uint8_t>{} : fullConfidence();
+    sharpen(resolved(), known, settings.policy.sharpness_q15, resizeFiltered(), settings.simd,
+            workers);
 }
 
 ColourPlanes FrameLoop::State::colour() const {
@@ -53,7 +58,7 @@ ColourPlanes FrameLoop::State::colour() const {
 
 /// The whole picture, or of the gather's, unless it was sharpened, what changed.
 void FrameLoop::State::encode() {
-    const bool by_tile = temporal() && gathers() && !sharpens();
+    const bool by_tile = temporal() && gathers() && !sharpens() && !enlarges();
     encodeOutput(colour(), table, output.view(), workers,
                  by_tile ? taa.changedTiles() : std::span<const uint8_t>());
     taa.forgetChanges();
@@ -157,10 +162,12 @@ bool FrameLoop::rejections(const RejectionTargets& out) const {
 
 std::vector<TileWork> FrameLoop::tileWork() const {
     const State& s = *state_;
-    if (s.temporal() && s.gathers()) {
+    if (s.temporal() && s.gathers() && !s.enlarges()) {
         return s.taa.tileWork();
     }
-    return std::vector<TileWork>(s.gbuffer.tiles.size(), {.drawn = true, .resolved = true});
+    const auto along = [](int pixels) { return size_t(pixels + kTileSize - 1) / kTileSize; };
+    return std::vector<TileWork>(along(s.output.width()) * along(s.output.height()),
+                                 {.drawn = true, .resolved = true});
 }
 
 }  // namespace still

@@ -72,9 +72,13 @@ struct StageTimes {
 /// What render() hands out; views are valid until the next render().
 struct FrameResult {
     ImageView<const Rgb8> output;
-    ColourPlanes linear;               ///< the same before encoding, fx12
-    const GBuffer* gbuffer = nullptr;  ///< of the last sub-frame; see FrameSettings::fresh_gbuffer
-    ImageView<const uint8_t> sample_count;  ///< Method::gather only, else empty
+    ColourPlanes linear;  ///< the same before encoding, fx12
+    /// Of the last sub-frame, see FrameSettings::fresh_gbuffer; smaller than the output with a
+    /// policy that upscales.
+    const GBuffer* gbuffer = nullptr;
+    /// Method::gather only, else empty. Of the frame's pixels, not the output's, with a policy that
+    /// enlarges in space.
+    ImageView<const uint8_t> sample_count;
     /// How much of a pixel is known, up to confidence_full; empty without TAA. Samples in the
     /// pixel (Method::gather), or trust in history.
     ImageView<const uint8_t> confidence;
@@ -107,7 +111,8 @@ class FrameLoop {
 
     // What the last frame did, told when asked for: postfx/story.h. Valid as long as its result.
 
-    /// None without AntiAliasing::taa, before the first frame and outside the picture.
+    /// None without AntiAliasing::taa, with upscaling, before the first frame and outside the
+    /// picture.
     std::optional<PixelStory> story(int x, int y) const;
     /// The same for the whole picture; false, and nothing is written, where story() has none. The
     /// targets have the last frame's size. About a microsecond a pixel and thread.

@@ -114,7 +114,8 @@ Result<void> open(const Manifest& manifest, const Case& golden_case, const Optio
     const bool finished = golden_case.frames == std::vector<int>{0} &&
                           opened.settings.anti_aliasing == AntiAliasing::taa &&
                           isStill(opened.scene, camera);
-    opened.settings.subframes = golden_case.samples.value_or(finished ? int(kTaaPeriod) : 1);
+    opened.settings.subframes =
+        golden_case.samples.value_or(finished ? finishingSamples(opened.settings.policy) : 1);
     return {};
 }
 

@@ -272,6 +272,21 @@ constexpr uint64_t flipsOfCycle(uint32_t cycle) {
     return z ^ (z >> 31);
 }
 
+/// Of temporal upscaling; see upscaleSample().
+constexpr uint32_t kUpscaleSeedX = 1, kUpscaleSeedY = 2;
+
+/// scrambled() with bits drawn for each node from `seed`.
+constexpr uint32_t scrambledAnew(uint32_t v, uint32_t seed, int bits) {
+    uint32_t result = 0;
+    uint32_t node = 1;
+    for (int i = bits - 1; i >= 0; --i) {
+        const uint32_t bit = (v >> i) & 1;
+        result |= (bit ^ uint32_t(flipsOfCycle(seed << 12 | node) >> 63)) << i;
+        node = node * 2 + bit;
+    }
+    return result;
+}
+
 int scaledOffset(int offset_fx8, int scale_fx8) {
     return std::clamp(roundShift(offset_fx8 * scale_fx8, 8), -128, 127);
 }
@@ -296,6 +311,38 @@ SampleOffset jitterSample(JitterPattern pattern, int scale_fx8, bool scramble, u
 
 SampleOffset taaSample(uint32_t index) {
     return kNet64[index % kTaaPeriod];
+}
+
+uint32_t upscalePeriod(int ratio_fx8) {
+    assert(ratio_fx8 >= kNativeRatio_fx8 && ratio_fx8 <= kMaxRatio_fx8);
+    const uint32_t samples_fx16 = kTaaPeriod * uint32_t(ratio_fx8) * uint32_t(ratio_fx8);
+    return std::bit_ceil((samples_fx16 + 65535) >> 16);
+}
+
+SampleOffset upscaleSample(uint32_t index, uint32_t period) {
+    assert(std::has_single_bit(period) && period >= kTaaPeriod && period <= kMaxUpscalePeriod);
+    const int bits = std::countr_zero(period);
+    const uint32_t point = index % period;
+    const uint32_t x = scrambledAnew(mirrored(point, bits), kUpscaleSeedX, bits);
+    const uint32_t y = scrambledAnew(sobolSecond(point, bits), kUpscaleSeedY, bits);
+    return {cellOffset(x, bits), cellOffset(y, bits)};
+}
+
+static bool lengthens(const TaaPolicy& policy) {
+    return upscalesInTime(policy) && policy.jitter == JitterPattern::net64;
+}
+
+uint32_t policyPeriod(const TaaPolicy& policy) {
+    return lengthens(policy) ? upscalePeriod(policy.ratio_fx8) : jitterPeriod(policy.jitter);
+}
+
+SampleOffset policySample(const TaaPolicy& policy, uint32_t index) {
+    if (!lengthens(policy)) {
+        return jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, index);
+    }
+    const SampleOffset sample = upscaleSample(index, policyPeriod(policy));
+    return {scaledOffset(sample.x_fx8, policy.jitter_scale_fx8),
+            scaledOffset(sample.y_fx8, policy.jitter_scale_fx8)};
 }
 
 SampleOffset ssaaSample(uint32_t index, uint32_t count) {

@@ -37,6 +37,26 @@ constexpr int kMaxJitterScale_fx8 = 1024;
 /// values are exact and rounded half up. Formulas: jitter.cpp.
 SampleOffset jitterSample(JitterPattern pattern, int scale_fx8, bool scramble, uint32_t index);
 
+/// Length of the sequence of temporal upscaling: as many samples for each output pixel as the TAA
+/// sequence has, rounded up to a power of two: kTaaPeriod … kMaxUpscalePeriod.
+uint32_t upscalePeriod(int ratio_fx8);
+constexpr uint32_t kMaxUpscalePeriod = 1024;
+
+/// Sample `index` (taken modulo `period`) of the sequence of upscalePeriod() samples:
+/// Owen-scrambled Sobol, whose aligned runs of 2, 4, 8 … are (0,2)-nets, so that every square part
+/// of a pixel gets its share early. A mean of up to −1/512 pixel is left, as of ssaaSample().
+SampleOffset upscaleSample(uint32_t index, uint32_t period);
+
+/// What a policy asks for: its pattern, but with JitterPattern::net64 and temporal upscaling the
+/// sequence above (without `scramble`).
+uint32_t policyPeriod(const TaaPolicy& policy);
+SampleOffset policySample(const TaaPolicy& policy, uint32_t index);
+
+/// Frames after which a picture that stands still is called finished: of ours, none are left.
+inline int finishingSamples(const TaaPolicy& policy) {
+    return int(upscalesInTime(policy) ? policyPeriod(policy) : kTaaPeriod);
+}
+
 /// Sample `index` of a set of `count` samples for ssaa references; 1 ≤ count ≤ 65536. A single
 /// sample is the pixel's centre. Powers of two are (0,2)-nets: up to 128 samples they have zero
 /// mean, 256 and more use the full 1/256 grid (mean −1/512 pixel). Other counts are nearly as even.

@@ -16,10 +16,26 @@ constexpr TaaPolicy gathering(int ring) {
     return policy;
 }
 
-constexpr std::array<TaaPreset, 3> kOurs{{
+constexpr TaaPolicy upscaling(int ratio_fx8, Upscaler upscaler) {
+    TaaPolicy policy;
+    policy.ratio_fx8 = ratio_fx8;
+    policy.upscaler = upscaler;
+    return policy;
+}
+constexpr int kRatio1_5 = 384, kRatio1_7 = 435, kRatio2 = 512, kRatio3 = 768;
+
+constexpr std::array<TaaPreset, 9> kOurs{{
     {"still", "ours: gathers 8 raw frames along the motion", gathering(8)},
     {"fast", "ours, from 4 frames", gathering(4)},
     {"tiny", "ours, from 2 frames", gathering(2)},
+    {"quality", "ours, rendered at 1/1.5 per axis", upscaling(kRatio1_5, Upscaler::temporal)},
+    {"balanced", "ours, rendered at 1/1.7 per axis", upscaling(kRatio1_7, Upscaler::temporal)},
+    {"performance", "ours, rendered at 1/2 per axis", upscaling(kRatio2, Upscaler::temporal)},
+    {"ultra", "ours, rendered at 1/3 per axis", upscaling(kRatio3, Upscaler::temporal)},
+    {"bicubic", "still at 1/1.5 per axis, enlarged by Catmull-Rom",
+     upscaling(kRatio1_5, Upscaler::bicubic)},
+    {"edge", "still at 1/1.5 per axis, enlarged along edges (AMD's FSR 1 EASU)",
+     upscaling(kRatio1_5, Upscaler::edge)},
 }};
 
 constexpr auto makePresets() {
@@ -140,6 +156,8 @@ constexpr Entry kEntries[] = {
     choice<&P::partial>("partial", "off|on"),
     choice<&P::anti_flicker>("anti_flicker", "none|inverse-luminance|inverse-log|luma-difference"),
     choice<&P::tone>("tone", "linear|reinhard"),
+    number<&P::ratio_fx8>("ratio", "1 ... 3", 256, kNativeRatio_fx8, kMaxRatio_fx8),
+    choice<&P::upscaler>("upscaler", "temporal|bicubic|edge"),
     number<&P::mip_bias_fx8>("mip_bias", "-8 ... 8", 256, -2048, 2048),
     number<&P::sharpness_q15>("sharpness", "0 ... 1", kQ15, 0, kQ15),
 };
@@ -171,6 +189,24 @@ const Entry* entryOf(std::string_view key) {
 }
 
 }  // namespace
+
+int mipBias_fx8(const TaaPolicy& policy) {
+    // Squaring doubles the logarithm: one bit of it a time, one more than is kept.
+    int log2_fx9 = 0;
+    uint64_t root = uint64_t(policy.ratio_fx8) << 22;  // 1.0 = 2^30, below 4
+    while (root >= uint64_t{2} << 30) {
+        root >>= 1;
+        log2_fx9 += 512;
+    }
+    for (int bit = 256; bit > 0; bit >>= 1) {
+        root = (root * root) >> 30;
+        if (root >= uint64_t{2} << 30) {
+            root >>= 1;
+            log2_fx9 += bit;
+        }
+    }
+    return policy.mip_bias_fx8 + roundShift(-log2_fx9, 1);
+}
 
 std::span<const TaaPreset> taaPresets() {
     return kPresets;

@@ -74,6 +74,15 @@ enum class AntiFlicker : uint8_t {
 };
 enum class Tone : uint8_t { linear, reinhard };  ///< in which blending takes place
 
+/// How a picture becomes larger than what is rendered: TaaPolicy::ratio_fx8.
+enum class Upscaler : uint8_t {
+    temporal,  ///< postfx/upscale.h; Method::recursive takes `edge` instead
+    bicubic,   ///< anti-aliased at the rendered size, then postfx/spatial_upscale.h
+    edge,      ///< the same along the edges
+};
+
+constexpr int kNativeRatio_fx8 = 256, kMaxRatio_fx8 = 768;
+
 struct TaaPolicy {
     Method method = Method::gather;
 
@@ -112,13 +121,32 @@ struct TaaPolicy {
     Tone tone = Tone::linear;
 
     // Both
-    /// Output size by rendered size, per axis: 256 (native) … 768.
+    /// Output size by rendered size, per axis: kNativeRatio_fx8 … kMaxRatio_fx8. The rendered size
+    /// is rounded up to whole pixels.
     int ratio_fx8 = 256;
+    Upscaler upscaler = Upscaler::temporal;
     int mip_bias_fx8 = 0;
     int sharpness_q15 = 0;  ///< of the sharpening after the resolve
 
     friend bool operator==(const TaaPolicy&, const TaaPolicy&) = default;
 };
+
+/// Whether a frame has fewer pixels than the picture.
+constexpr bool upscales(const TaaPolicy& policy) {
+    return policy.ratio_fx8 > kNativeRatio_fx8;
+}
+/// … that history makes good: postfx/upscale.h.
+constexpr bool upscalesInTime(const TaaPolicy& policy) {
+    return upscales(policy) && policy.upscaler == Upscaler::temporal &&
+           policy.method == Method::gather;
+}
+/// Width or height of the frames for one of the picture.
+constexpr int renderedSize(int size, int ratio_fx8) {
+    return (size * 256 + ratio_fx8 - 1) / ratio_fx8;
+}
+/// TaaPolicy::mip_bias_fx8 less log2 of the ratio (to 1/256): textures are as sharp as the
+/// picture's pixels want them.
+int mipBias_fx8(const TaaPolicy& policy);
 
 struct TaaPreset {
     std::string_view name;
@@ -126,7 +154,7 @@ struct TaaPreset {
     TaaPolicy policy;
 };
 
-/// still, fast, tiny, then the published ones.
+/// still, fast, tiny, the ones that upscale, then the published ones.
 std::span<const TaaPreset> taaPresets();
 
 /// Null when there is no such preset.

@@ -47,7 +47,7 @@ void Pane::watchForRest() {
     const uint64_t hash = hashPlane(result_.output);
     equal_frames_ = stands && hash == last_hash_ ? equal_frames_ + 1 : 0;
     last_hash_ = hash;
-    at_rest_ = equal_frames_ >= int(jitterPeriod(mode_.policy.jitter));
+    at_rest_ = equal_frames_ >= int(policyPeriod(mode_.policy));
 }
 
 bool Pane::wantsLastFrame() const {
@@ -106,7 +106,7 @@ const GBuffer& Pane::sample() {
                     {.offset = jitter(),
                      .sample = sampleNumber(),
                      .planes = {.normal = true, .motion = true},
-                     .mip_bias_fx8 = temporal() ? mode_.policy.mip_bias_fx8 : 0,
+                     .mip_bias_fx8 = temporal() ? mipBias_fx8(mode_.policy) : 0,
                      .camera_motion_only = camera_only});
         probed_frame_ = shown_frame_;
     }
@@ -166,12 +166,10 @@ std::vector<SampleOffset> Pane::pattern() const {
     // The gather's pattern goes along with the camera: all of it is shifted by as much as this
     // frame's sample is, modulo a pixel.
     const TaaPolicy& policy = mode_.policy;
-    const auto sampleAt = [&](uint32_t index) {
-        return jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, index);
-    };
+    const auto sampleAt = [&](uint32_t index) { return policySample(policy, index); };
     const SampleOffset plain = sampleAt(sampleNumber());
     const auto withinPixel = [](int offset_fx8) { return ((offset_fx8 + 128) & 255) - 128; };
-    for (uint32_t i = 0; i < jitterPeriod(policy.jitter); ++i) {
+    for (uint32_t i = 0; i < policyPeriod(policy); ++i) {
         const SampleOffset offset = sampleAt(i);
         offsets.push_back({withinPixel(offset.x_fx8 + result_.jitter.x_fx8 - plain.x_fx8),
                            withinPixel(offset.y_fx8 + result_.jitter.y_fx8 - plain.y_fx8)});

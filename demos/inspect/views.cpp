@@ -162,17 +162,23 @@ void paintMotion(const GBuffer& g, ImageView<Rgb8> out, Workers& workers) {
     paintRows(out, workers, [&](int x, int y) { return motionColour(g.motion.at(x, y)); });
 }
 
+/// The value of a plane that may be smaller than the picture.
+static int valueUnder(ImageView<const uint8_t> plane, ImageView<Rgb8> out, int x, int y) {
+    return plane.at(x * plane.width / out.width, y * plane.height / out.height);
+}
+
 void paintCount(ImageView<const uint8_t> count, int full, ImageView<Rgb8> out, Workers& workers) {
     paintRows(out, workers, [&](int x, int y) {
-        return count.empty() ? kNothing
-                             : grey(int(255 * std::sqrt(double(count.at(x, y)) / full) + 0.5));
+        return count.empty()
+                   ? kNothing
+                   : grey(int(255 * std::sqrt(double(valueUnder(count, out, x, y)) / full) + 0.5));
     });
 }
 
 void paintConfidence(ImageView<const uint8_t> confidence, int full, ImageView<Rgb8> out,
                      Workers& workers) {
     paintRows(out, workers, [&](int x, int y) {
-        return confidence.empty() ? kNothing : grey(confidence.at(x, y) * 255 / full);
+        return confidence.empty() ? kNothing : grey(valueUnder(confidence, out, x, y) * 255 / full);
     });
 }
 

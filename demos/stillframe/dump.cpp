@@ -29,7 +29,9 @@ void paintMotionValues(const GBuffer& g, ImageView<Rgb8> out, Workers& workers) 
 
 Image<Rgb8> pictureOf(DumpPlane plane, const FrameResult& frame, const OutputTable& table) {
     const GBuffer& gbuffer = *frame.gbuffer;
-    Image<Rgb8> picture(gbuffer.width(), gbuffer.height());
+    const bool of_output = plane == DumpPlane::confidence && !frame.confidence.empty();
+    Image<Rgb8> picture(of_output ? frame.confidence.width : gbuffer.width(),
+                        of_output ? frame.confidence.height : gbuffer.height());
     const ImageView<Rgb8> out = picture.view();
     Workers workers(1, Schedule::serial);
     switch (plane) {

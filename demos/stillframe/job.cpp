@@ -219,7 +219,8 @@ Outcome<void> settleSamples(Job& job) {
     const bool alone = job.frames == 1 && job.settings.anti_aliasing == AntiAliasing::taa &&
                        isStill(job.scene, job.settings.camera);
     if (alone && (job.options.samples || !job.options.start)) {
-        job.settings.subframes = job.options.samples.value_or(int(kTaaPeriod));
+        job.settings.subframes =
+            job.options.samples.value_or(finishingSamples(job.settings.policy));
     } else if (job.options.samples) {
         return usageError(
             "--samples: is for one frame with --anti-aliasing taa in which nothing "

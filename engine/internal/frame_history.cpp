@@ -35,8 +35,8 @@ static void freeze(FrameState& frame) {
 
 void FrameLoop::State::followCamera(const FrameState& frame) {
     const bool follows = gathers() && settings.policy.jitter != JitterPattern::none && !frame.cut;
-    drift = follows ? driftAfter(drift, frame.camera, frame.camera_before, settings.width,
-                                 settings.height)
+    drift = follows ? driftAfter(drift, frame.camera, frame.camera_before, renderedWidth(),
+                                 renderedHeight())
                     : SampleOffset{};
 }
 
@@ -45,9 +45,7 @@ SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample
     if (frame.jitter_fx8 && settings.subframes == 1) {
         return {(*frame.jitter_fx8)[0], (*frame.jitter_fx8)[1]};
     }
-    const TaaPolicy& policy = settings.policy;
-    const SampleOffset offset =
-        jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, sample);
+    const SampleOffset offset = policySample(settings.policy, sample);
     return {withinPixel(offset.x_fx8 - drift.x_fx8), withinPixel(offset.y_fx8 - drift.y_fx8)};
 }
 
@@ -120,6 +118,9 @@ void FrameLoop::State::resolveHistory(int frame) {
     for (int replayed = first; replayed <= frame; ++replayed) {
         times = {};
         resolveFrame(replayed, replayed == frame);
+    }
+    if (enlarges() && !shown) {
+        timed(times.taa_ms, [&] { enlarge(); });
     }
     if (sharpens() && !shown) {
         timed(times.taa_ms, [&] { sharpenResolved(); });

@@ -10,6 +10,7 @@
 #include "postfx/laboratory.h"
 #include "postfx/sample_sums.h"
 #include "postfx/spatial.h"
+#include "postfx/spatial_upscale.h"
 
 namespace still {
 
@@ -45,6 +46,7 @@ struct FrameLoop::State {
     Taa taa;                ///< Method::gather
     Laboratory laboratory;  ///< Method::recursive
     SpatialFilter spatial;
+    SpatialUpscaler enlarger;  ///< policies that upscale
     GBuffer gbuffer;        ///< what is resolved; tiles that nothing new is in keep earlier samples
     GBuffer fresh;          ///< FrameSettings::fresh_gbuffer, in frames that `gbuffer` has parts of
     bool in_parts = false;  ///< this is such a frame
@@ -52,6 +54,7 @@ struct FrameLoop::State {
     Image<Rgb8> output;
     ColourSums sums;
     ColourImages filtered;      ///< mean of ssaa samples, or after spatial filter or sharpening
+    ColourImages enlarged;      ///< before sharpening
     Image<uint8_t> confidence;  ///< for sharpening only
     StageTimes times;
     RasterCounters counters;
@@ -78,10 +81,12 @@ struct FrameLoop::State {
     }
 
     bool temporal() const { return settings.anti_aliasing == AntiAliasing::taa; }
-    bool hasStory() const { return temporal() && !gbuffer.red.empty(); }
+    bool hasStory() const {
+        return temporal() && !upscales(settings.policy) && !gbuffer.red.empty();
+    }
     bool gathers() const { return settings.policy.method == Method::gather; }
     bool sharpens() const { return temporal() && settings.policy.sharpness_q15 > 0; }
-    int sampleCap() const { return int(jitterPeriod(settings.policy.jitter)); }
+    int sampleCap() const { return int(std::min(policyPeriod(settings.policy), 255u)); }
     /// Samples that are averaged; 1 when there is nothing to average.
     int ssaaSamples() const {
         return settings.anti_aliasing == AntiAliasing::ssaa ? settings.ssaa_samples : 1;
@@ -103,6 +108,10 @@ struct FrameLoop::State {
     ColourPlanes resolved() const;
     ImageView<const uint8_t> fullConfidence();
     void sharpenResolved();
+    bool enlarges() const;
+    int renderedWidth() const;
+    int renderedHeight() const;
+    void enlarge();
     void averageSamples(const FrameState& frame);
     void filterSample();
     void renderAlone(int frame);

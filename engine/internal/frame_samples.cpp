@@ -16,7 +16,7 @@ RasterSettings FrameLoop::State::rasterSettings() const {
         const TaaPolicy& policy = settings.policy;
         raster.planes.motion = true;
         raster.planes.normal |= gathers() || policy.normal_reject_q15 > 0;
-        raster.mip_bias_fx8 = policy.mip_bias_fx8;
+        raster.mip_bias_fx8 = mipBias_fx8(policy);
         raster.camera_motion_only = !gathers() && policy.motion == MotionSource::camera;
     }
     return raster;
@@ -33,8 +33,8 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
                         .windings = windings,
                         .lighting = frame.lighting,
                         .background = settings.background.value_or(scene.background)};
-    const FrameView view{.width = settings.width,
-                         .height = settings.height,
+    const FrameView view{.width = renderedWidth(),
+                         .height = renderedHeight(),
                          .view_projection = frame.camera.view_projection,
                          .view_projection_before = frame.camera_before.view_projection,
                          .eye = glm::vec3(frame.camera.eye),
@@ -47,7 +47,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
     timed(sample_times.transform_bin_ms, [&] {
         const auto facts = rasterizer.setUp(list, view, rasterSettings());
         if (evidence != nullptr && !rest) {
-            wanted = taa.plan(settings.width, settings.height, facts, *evidence, taaSettings());
+            wanted = taa.plan(view.width, view.height, facts, *evidence, taaSettings());
         }
         rasterizer.transformAndBin(workers);
     });

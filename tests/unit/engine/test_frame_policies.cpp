@@ -140,12 +140,15 @@ TEST_CASE("frame_loop: confidence exists with every policy, and only there", "[u
         FrameLoop loop(scene, settingsOf(preset.policy), workers);
         const FrameResult first = loop.render(0);
         CAPTURE(preset.name);
-        REQUIRE(first.confidence.width == kWidth);
-        REQUIRE(first.confidence.height == kHeight);
-        const int begun = first.confidence.at(40, 50);
+        const TaaPolicy& policy = preset.policy;
+        const int ratio_fx8 = upscalesInTime(policy) ? kNativeRatio_fx8 : policy.ratio_fx8;
+        REQUIRE(first.confidence.width == renderedSize(kWidth, ratio_fx8));
+        REQUIRE(first.confidence.height == renderedSize(kHeight, ratio_fx8));
+        const int x = 40 * 256 / ratio_fx8, y = 50 * 256 / ratio_fx8;
+        const int begun = first.confidence.at(x, y);
         const FrameResult fourth = loop.render(3);
-        CHECK(fourth.confidence.at(40, 50) > begun);
-        CHECK(fourth.confidence.at(40, 50) <= fourth.confidence_full);
+        CHECK(fourth.confidence.at(x, y) > begun);
+        CHECK(fourth.confidence.at(x, y) <= fourth.confidence_full);
         CHECK(fourth.sample_count.empty() == (preset.policy.method == Method::recursive));
     }
     FrameSettings settings = settingsOf({});

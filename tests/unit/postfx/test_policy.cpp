@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
 #include <set>
 #include <string>
 #include <utility>
@@ -34,7 +36,7 @@ TaaPolicy with(std::string_view key, std::string_view value) {
 
 TEST_CASE("policy: ours come first, names are unique and found", "[postfx][unit]") {
     const auto presets = taaPresets();
-    REQUIRE(presets.size() == 11);
+    REQUIRE(presets.size() == 17);
     CHECK(presets[0].name == "still");
     CHECK(presets[1].name == "fast");
     CHECK(presets[2].name == "tiny");
@@ -44,7 +46,7 @@ TEST_CASE("policy: ours come first, names are unique and found", "[postfx][unit]
         CHECK_FALSE(preset.about.empty());
         REQUIRE(findPreset(preset.name) != nullptr);
         CHECK(findPreset(preset.name)->policy == preset.policy);
-        const bool ours = names.size() <= 3;
+        const bool ours = names.size() <= 9;
         CHECK((preset.policy.method == Method::gather) == ours);
     }
     CHECK(findPreset("nothing") == nullptr);
@@ -163,4 +165,28 @@ TEST_CASE("policy: every key's number is read back, held within its range", "[po
             }
         }
     }
+}
+
+TEST_CASE("policy: frames are rounded up, and textures sharpened by the ratio", "[postfx][unit]") {
+    CHECK(renderedSize(1920, kNativeRatio_fx8) == 1920);
+    CHECK(renderedSize(1920, 384) == 1280);
+    CHECK(renderedSize(1920, 512) == 960);
+    CHECK(renderedSize(320, 384) == 214);  // 213.3
+    CHECK(renderedSize(1, kMaxRatio_fx8) == 1);
+    for (int ratio_fx8 = kNativeRatio_fx8; ratio_fx8 <= kMaxRatio_fx8; ++ratio_fx8) {
+        TaaPolicy policy;
+        policy.ratio_fx8 = ratio_fx8;
+        policy.mip_bias_fx8 = -3;
+        const double wanted = -3 - 256 * std::log2(ratio_fx8 / 256.0);
+        CHECK(std::abs(mipBias_fx8(policy) - wanted) < 1);
+    }
+    CHECK(findPreset("performance")->policy.ratio_fx8 == 512);
+    CHECK(mipBias_fx8(findPreset("performance")->policy) == -256);
+    CHECK(mipBias_fx8({}) == 0);
+    TaaPolicy policy = findPreset("quality")->policy;
+    CHECK((upscales(policy) && upscalesInTime(policy)));
+    policy.method = Method::recursive;
+    CHECK((upscales(policy) && !upscalesInTime(policy)));
+    CHECK_FALSE(upscalesInTime(findPreset("edge")->policy));
+    CHECK_FALSE(upscales({}));
 }
