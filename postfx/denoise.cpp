@@ -222,7 +222,7 @@ Denoiser::Denoiser() : state_(std::make_unique<State>()) {}
 Denoiser::~Denoiser() = default;
 
 void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const DenoiseFrame& frame,
-                   SimdTarget, Workers& workers) {
+                   SimdTarget simd, Workers& workers) {
     assert(gbuffer.planes.normal && gbuffer.planes.motion);
     State& s = *state_;
     s.resize(gbuffer.width(), gbuffer.height());
@@ -234,15 +234,15 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
     s.cursor = 1 - s.cursor;
     s.since_change = changed || !s.has_past ? 0 : std::min(s.since_change + 1, denoising::kLongest);
     const Job job = s.makeJob(gbuffer, noisy, changed);
-    s.eachTile(workers, [&](const TileRect& tile) { denoising::guidesReference(job, tile); });
-    s.eachTile(workers, [&](const TileRect& tile) { denoising::blendReference(job, tile); });
-    s.eachTile(workers, [&](const TileRect& tile) { denoising::varianceReference(job, tile); });
+    const denoising::Kernels kernels = denoising::kernels(simd);
+    s.eachTile(workers, [&](const TileRect& tile) { kernels.guides(job, tile); });
+    s.eachTile(workers, [&](const TileRect& tile) { kernels.blend(job, tile); });
+    s.eachTile(workers, [&](const TileRect& tile) { kernels.variance(job, tile); });
     for (int pass = 0; pass < denoising::kPasses; ++pass) {
         const FilterPlanes in = s.filtered[size_t(pass % 2)].pointers();
         const FilterPlanes out = s.filtered[size_t(1 - pass % 2)].pointers();
-        s.eachTile(workers, [&](const TileRect& tile) {
-            denoising::filterReference(job, in, out, pass, tile);
-        });
+        s.eachTile(workers,
+                   [&](const TileRect& tile) { kernels.filter(job, in, out, pass, 3, tile); });
     }
     s.has_past = true;
 }

@@ -106,16 +106,6 @@ Found findPast(const Job& job, int x, int y) {
     return found;
 }
 
-BlockChange changeAt(const Job& job, int part, int x, int y) {
-    if (job.change[part] == nullptr) {
-        return {};
-    }
-    const Motion motion = job.motion[y * job.stride + x];
-    const int px = std::clamp((x * 256 + motion.x_fx8 + 128) >> 8, 0, job.width - 1);
-    const int py = std::clamp((y * 256 + motion.y_fx8 + 128) >> 8, 0, job.height - 1);
-    return job.change[part][(py / kLightBlock) * job.blocks_x + px / kLightBlock];
-}
-
 void clear(const Job& job, ptrdiff_t at) {
     for (int c = 0; c < kChannels; ++c) {
         job.now.light[c][at] = 0;
@@ -130,7 +120,9 @@ void clear(const Job& job, ptrdiff_t at) {
     job.light_age[at] = 255;
 }
 
-void blend(const Job& job, int x, int y) {
+}  // namespace
+
+void blendPixel(const Job& job, int x, int y) noexcept {
     const ptrdiff_t at = y * job.stride + x;
     if (job.now.surface[at] == 0) {
         clear(job, at);
@@ -165,6 +157,8 @@ void blend(const Job& job, int x, int y) {
     job.light_age[at] = uint8_t(light_age);
 }
 
+namespace {
+
 float pastLuminance(const Job& job, int part, ptrdiff_t at) {
     return luminance(job.now.light[3 * part][at], job.now.light[3 * part + 1][at],
                      job.now.light[3 * part + 2][at]);
@@ -175,15 +169,15 @@ bool alike(const Job& job, ptrdiff_t a, ptrdiff_t b) {
                          job.now.normal[1][a] * job.now.normal[1][b] +
                          job.now.normal[2][a] * job.now.normal[2][b];
     return job.now.surface[b] != 0 && cosine >= kPastCosine &&
-           std::abs(int(job.now.depth[a]) - int(job.now.depth[b])) <= 6 * kDepthTolerance;
+           std::abs(int(job.now.depth[a]) - int(job.now.depth[b])) <= kAroundTolerance;
 }
 
-/// Of one sample, from the 7×7 around the pixel.
+/// Of one sample, from the pixels around.
 float variedAround(const Job& job, int part, int x, int y) {
     const ptrdiff_t at = y * job.stride + x;
     float total = 0, sum = 0, squares = 0;
-    for (int j = std::max(y - 3, 0); j <= std::min(y + 3, job.height - 1); ++j) {
-        for (int i = std::max(x - 3, 0); i <= std::min(x + 3, job.width - 1); ++i) {
+    for (int j = std::max(y - kAround, 0); j <= std::min(y + kAround, job.height - 1); ++j) {
+        for (int i = std::max(x - kAround, 0); i <= std::min(x + kAround, job.width - 1); ++i) {
             const ptrdiff_t from = j * job.stride + i;
             if (alike(job, at, from)) {
                 total += 1;
@@ -231,7 +225,7 @@ void guidesReference(const Job& job, const TileRect& tile) noexcept {
 void blendReference(const Job& job, const TileRect& tile) noexcept {
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
-            blend(job, x, y);
+            blendPixel(job, x, y);
         }
     }
 }
@@ -247,9 +241,8 @@ void varianceReference(const Job& job, const TileRect& tile) noexcept {
                 const float count = float(job.now.count[p][at]);
                 const float mean = pastLuminance(job, p, at);
                 const float own = std::max(0.0f, job.now.square[p][at] - mean * mean);
-                const float varied =
-                    count < kShort ? variedAround(job, p, x, y) : own * count / (count - 1);
-                job.first.variance[p][at] = varied / count;
+                job.first.variance[p][at] =
+                    count < kShort ? variedAround(job, p, x, y) / count : own / (count - 1);
             }
         }
     }
@@ -257,15 +250,14 @@ void varianceReference(const Job& job, const TileRect& tile) noexcept {
 
 namespace {
 
-/// Variance of the 3×3 around a pixel.
+/// Variance of the 3×3 around a pixel, the border's repeated.
 float smoothVariance(const Job& job, const float* variance, int x, int y) {
-    constexpr float kAxis[3] = {0.25f, 0.5f, 0.25f};
     float sum = 0;
     for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {
             const int nx = std::clamp(x + i, 0, job.width - 1);
             const int ny = std::clamp(y + j, 0, job.height - 1);
-            sum += kAxis[i + 1] * kAxis[j + 1] * variance[ny * job.stride + nx];
+            sum += kSmooth[i + 1] * kSmooth[j + 1] * variance[ny * job.stride + nx];
         }
     }
     return sum;
@@ -276,19 +268,22 @@ float luminanceOf(const FilterPlanes& planes, int part, ptrdiff_t at) {
                      float(planes.light[3 * part + 2][at]));
 }
 
-void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out, int pass, int x,
-                 int y) {
+void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out, int pass,
+                 int parts, int x, int y) {
     const ptrdiff_t at = y * job.stride + x;
     const int stride = 1 << pass;
     const float depth = std::bit_cast<float>(job.depth[at]);
     const float step_x = job.step[0][at] * float(stride), step_y = job.step[1][at] * float(stride);
     const float plane_scale = planeScale(depth, step_x, step_y, float(stride));
-    float here[kParts], scale[kParts];
-    float total[kParts], square[kParts], sum[kChannels];
-    constexpr float kCentre = kWindow[0] * kWindow[0];
+    float here[kParts] = {}, scale[kParts] = {};
+    float total[kParts] = {}, square[kParts] = {}, sum[kChannels] = {};
     for (int p = 0; p < kParts; ++p) {
+        if (!filters(parts, p)) {
+            continue;
+        }
         here[p] = luminanceOf(in, p, at);
-        scale[p] = 1.0f / (kSigmas * std::sqrt(smoothVariance(job, in.variance[p], x, y)) + 1e-3f);
+        scale[p] =
+            1.0f / (kSigmas * std::sqrt(smoothVariance(job, in.variance[p], x, y)) + kLeastSpan);
         total[p] = kCentre;
         square[p] = kCentre * kCentre * in.variance[p][at];
         for (int c = 3 * p; c < 3 * p + 3; ++c) {
@@ -307,10 +302,13 @@ void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out
             const float dz = job.now.normal[2][at] - job.now.normal[2][from];
             const float off = std::bit_cast<float>(job.depth[from]) -
                               (depth + float(i) * step_x + float(j) * step_y);
-            const float shape = kWindow[std::abs(i)] * kWindow[std::abs(j)] *
+            const float shape = kWindow[i + 1] * kWindow[j + 1] *
                                 fallOff((dx * dx + dy * dy + dz * dz) * (1.0f / kNormalReach)) *
                                 fallOff(std::abs(off) * plane_scale);
             for (int p = 0; p < kParts; ++p) {
+                if (!filters(parts, p)) {
+                    continue;
+                }
                 const float difference = std::abs(luminanceOf(in, p, from) - here[p]);
                 const float weight = shape * fallOff(difference * scale[p]);
                 total[p] += weight;
@@ -322,6 +320,9 @@ void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out
         }
     }
     for (int p = 0; p < kParts; ++p) {
+        if (!filters(parts, p)) {
+            continue;
+        }
         const float share = 1.0f / total[p];
         out.variance[p][at] = square[p] * (share * share);
         for (int c = 3 * p; c < 3 * p + 3; ++c) {
@@ -333,10 +334,10 @@ void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out
 }  // namespace
 
 void filterReference(const Job& job, const FilterPlanes& in, const FilterPlanes& out, int pass,
-                     const TileRect& tile) noexcept {
+                     int parts, const TileRect& tile) noexcept {
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
-            filterPixel(job, in, out, pass, x, y);
+            filterPixel(job, in, out, pass, parts, x, y);
         }
     }
 }

@@ -30,6 +30,9 @@ constexpr int kYoungFrames = 16;
 constexpr int kYoungKept = 8;
 /// Before so many samples variance comes from the surroundings.
 constexpr int kShort = 4;
+/// … of so many pixels on each side whose logDepth16 differs by at most this.
+constexpr int kAround = 3;
+constexpr int kAroundTolerance = 6 * kDepthTolerance;
 
 /// Light may have drifted by this share of itself over the frames that TAA takes.
 constexpr float kAgeDrift = 0.06f;
@@ -58,10 +61,15 @@ inline float fallOff(float x) {
 
 /// Passes of the filter; pass k takes every 2^k-th pixel.
 constexpr int kPasses = 5;
-/// Of the filter's 5 × 5 window, each axis, from the centre.
-constexpr float kWindow[3] = {0.5f, 0.25f, 0.0f};
+/// Of the filter's 3 × 3 window, each axis; of its centre.
+constexpr float kWindow[3] = {0.25f, 0.5f, 0.25f};
+constexpr float kCentre = 0.25f;
+/// The same of the window over which variance is averaged.
+constexpr float kSmooth[3] = {0.25f, 0.5f, 0.25f};
 /// Luminances may differ by so many standard deviations.
 constexpr float kSigmas = 4.0f;
+/// … and by so much more, in units of the planes.
+constexpr float kLeastSpan = 1e-3f;
 /// Squared distance of normals at which nothing is taken.
 constexpr float kNormalReach = 0.12f;
 /// Distance from the pixel's plane at which nothing is taken, relative to the depth.
@@ -74,6 +82,22 @@ constexpr float kSlopeReach = 0.25f;
 inline float planeScale(float depth, float step_x, float step_y, float stride) {
     return 1.0f / (depth * (kPlaneReach * stride) +
                    (std::abs(step_x) + std::abs(step_y)) * kSlopeReach + 1e-12f);
+}
+
+/// Whether a set of parts holds one: a bit for each.
+constexpr bool filters(int parts, int part) {
+    return (parts >> part & 1) != 0;
+}
+
+/// By what light changed at a pixel.
+inline BlockChange changeAt(const Job& job, int part, int x, int y) {
+    if (job.change[part] == nullptr) {
+        return {};
+    }
+    const Motion motion = job.motion[y * job.stride + x];
+    const int px = std::clamp((x * 256 + motion.x_fx8 + 128) >> 8, 0, job.width - 1);
+    const int py = std::clamp((y * 256 + motion.y_fx8 + 128) >> 8, 0, job.height - 1);
+    return job.change[part][(py / kLightBlock) * job.blocks_x + px / kLightBlock];
 }
 
 }  // namespace still::denoising
