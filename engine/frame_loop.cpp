@@ -70,6 +70,10 @@ FrameResult FrameLoop::State::result() const {
     result.linear = colour();
     result.gbuffer = in_parts && settings.fresh_gbuffer ? &fresh : &gbuffer;
     result.jitter = jitter;
+    if (light != nullptr) {
+        result.light = planesOf(light->noisy);
+        result.denoised = denoises() ? light->denoiser.light() : LightPlanes{};
+    }
     result.times = times;
     if (temporal() && gathers()) {
         result.sample_count = taa.sampleCount();
@@ -100,7 +104,7 @@ FrameResult FrameLoop::render(int frame) {
         state.resize_frame = frame;
         state.resized = false;
     }
-    if (state.temporal()) {
+    if (state.hasPast()) {
         state.resolveHistory(frame);
     } else {
         state.renderAlone(frame);

@@ -10,6 +10,7 @@
 #include "engine/jitter.h"
 #include "engine/scene.h"
 #include "engine/timeline.h"
+#include "postfx/denoise.h"
 #include "postfx/encode.h"
 #include "postfx/policy.h"
 #include "postfx/story.h"
@@ -46,7 +47,7 @@ struct FrameSettings {
     PlaneSet planes{};  ///< in addition to what the other settings need
     /// FrameResult::gbuffer is read: it holds this frame's samples in every pixel. Else, with
     /// Method::gather, what is finished and at rest is not drawn again and keeps earlier samples.
-    /// Nothing else depends on it.
+    /// Nothing else depends on it. With sampled light a finished picture keeps them in any case.
     bool fresh_gbuffer = false;
     CameraChoice camera{};
     /// Sub-frames rendered at each frame's instant; > 1 only makes sense when the scene is still
@@ -76,6 +77,9 @@ struct FrameResult {
     /// Of the last sub-frame, see FrameSettings::fresh_gbuffer; smaller than the output with a
     /// policy that upscales.
     const GBuffer* gbuffer = nullptr;
+    /// Of scenes with sampled light, else empty: one sample a pixel, as it was taken last, and the
+    /// same without its noise, with Denoise::svgf. Their sum times the albedo is in the colours.
+    LightPlanes light{}, denoised{};
     /// Method::gather only, else empty. Of the frame's pixels, not the output's, with a policy that
     /// enlarges in space.
     ImageView<const uint8_t> sample_count;

@@ -21,6 +21,10 @@ Result<Scene> loadScene(const std::filesystem::path& file,
 /// messages; files that it names are looked for in the present folder.
 Result<Scene> loadSceneText(std::string text, const std::string& name);
 
+/// Gives the scene `light` or `lights`, and `background`, of a scene file instead of its own; the
+/// file's other keys are not looked at. Nothing changes after an error.
+Result<void> loadLights(const std::filesystem::path& file, Scene& scene);
+
 /// For a scene, just loaded, whose up is not +y (`up` is not zero): that of the camera and all
 /// views. Automatic light and camera are turned along, +x staying to the right unless up is ±x.
 void setUpAxis(Scene& scene, glm::dvec3 up);

@@ -33,11 +33,16 @@ StageHash hashPlanes(ImageView<const T>... planes) {
     return hash;
 }
 
+StageHash hashLight(const LightPlanes& light) {
+    const ColourPlanes &a = light.direct, &b = light.indirect;
+    return hashPlanes(a.red, a.green, a.blue, b.red, b.green, b.blue);
+}
+
 }  // namespace
 
 const char* name(Stage stage) {
-    constexpr const char* kNames[kStages] = {"depth", "id",     "normal", "motion",
-                                             "color", "linear", "output"};
+    constexpr const char* kNames[kStages] = {"depth", "id",       "normal", "motion", "albedo",
+                                             "light", "denoised", "color",  "linear", "output"};
     return kNames[int(stage)];
 }
 
@@ -52,6 +57,16 @@ StageHashes hashStages(const FrameResult& frame) {
     }
     if (g.planes.motion) {
         at(Stage::motion) = hashPlanes(g.motion.view(), g.depth_before.view());
+    }
+    if (g.planes.albedo) {
+        at(Stage::albedo) =
+            hashPlanes(g.albedo_red.view(), g.albedo_green.view(), g.albedo_blue.view());
+    }
+    if (!frame.light.direct.red.empty()) {
+        at(Stage::light) = hashLight(frame.light);
+    }
+    if (!frame.denoised.direct.red.empty()) {
+        at(Stage::denoised) = hashLight(frame.denoised);
     }
     at(Stage::color) = hashPlanes(g.red.view(), g.green.view(), g.blue.view());
     at(Stage::linear) = hashPlanes(frame.linear.red, frame.linear.green, frame.linear.blue);

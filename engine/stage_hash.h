@@ -15,13 +15,20 @@ enum class Stage {
     depth,
     id,
     normal,
-    motion,  ///< motion and the previous depth
-    color,   ///< of the G-buffer: this frame's sample
-    linear,  ///< the resolved picture before encoding
+    motion,    ///< motion and the previous depth
+    albedo,    ///< this and the next two: of scenes with sampled light
+    light,     ///< one sample of it
+    denoised,  ///< the same after the denoiser
+    color,     ///< of the G-buffer: this frame's sample
+    linear,    ///< the resolved picture before encoding
     output,
 };
-constexpr int kStages = 7;
+constexpr int kStages = 10;
 const char* name(Stage stage);
+/// Whether frames of scenes without sampled light do not have it.
+constexpr bool isOfSampledLight(Stage stage) {
+    return stage == Stage::albedo || stage == Stage::light || stage == Stage::denoised;
+}
 
 /// One stage of one frame. Without pixels there are no tiles.
 struct StageHash {

@@ -25,6 +25,11 @@ constexpr Entry kScenes[] = {
     {"depth", scenes::makeDepth},
     {"zoo", scenes::makeZoo},
     {"pan", scenes::makePan},
+    {"cornell", scenes::makeCornell},
+    {"penumbra", scenes::makePenumbra},
+    {"moving-light", scenes::makeMovingLight},
+    {"contact", scenes::makeContact},
+    {"switch-off", scenes::makeSwitchOff},
 };
 
 /// Made for measuring, listed by benchSceneNames().

@@ -17,4 +17,11 @@ Scene makeDepth();      ///< close pairs of planes over a depth range of 1e5
 Scene makeZoo();        ///< a bit of everything, for tables of hashes
 Scene makePan();        ///< still boxes under a panning camera, with a cut at frame 20
 
+// With sampled light.
+Scene makeCornell();      ///< the Cornell box: an area light and one bounce
+Scene makePenumbra();     ///< a board moves through the light of a large lamp
+Scene makeMovingLight();  ///< a lamp moves over a still life
+Scene makeContact();      ///< ambient light and contact shadows
+Scene makeSwitchOff();    ///< two lamps, one of which goes out in frame 32
+
 }  // namespace still::scenes

@@ -42,6 +42,17 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
                     "scene without motion becomes; default 64")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
+    render
+        .add_option("--lights", o.lights,
+                    "Scene file whose lights and background are taken instead of\n"
+                    "the scene's own, as demos/scenes/sun_and_sky.json")
+        ->type_name("FILE");
+    render
+        .add_option("--denoise", o.denoise,
+                    "on (default) or off: whether light that is sampled, as of\n"
+                    "soft shadows, is cleaned of noise; ssaa:N needs none")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->type_name("SWITCH");
     render.add_option("--tone-map", o.tone_map, "none (default) or reinhard")
         ->check(CLI::IsMember({"none", "reinhard"}))
         ->type_name("NAME");

@@ -116,6 +116,7 @@ Outcome<void> settleOptions(Job& job) {
     settings.tone_map = options.tone_map == "reinhard" ? ToneMap::reinhard : ToneMap::none;
     settings.exposure = exposureFactor(options.exposure_stops);
     settings.background = options.background;
+    settings.denoise = options.denoise == "on" ? Denoise::svgf : Denoise::off;
     if (options.no_background) {
         settings.background = {0.0f, 0.0f, 0.0f};
     }
@@ -154,7 +155,7 @@ Outcome<void> readCameras(Job& job) {
 
 Outcome<void> readFiles(Job& job) {
     const auto cache = job.options.no_cache ? std::filesystem::path() : usersCacheFolder();
-    return store(openScene(job.scene_name, cache), job.scene)
+    return store(openScene(job.scene_name, cache, job.options.lights), job.scene)
         .map([&] { printWarnings(job.scene.warnings, job.options.quiet); })
         .and_then([&] { return readCameras(job); });
 }

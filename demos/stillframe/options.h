@@ -24,6 +24,7 @@ struct RenderOptions {
     std::optional<Size> resolution;   ///< empty: 1280x720, or the camera file's
     std::optional<int> frames;        ///< empty: 1, 60 of a turntable, or the camera file's count
     std::optional<int> start;         ///< empty: 0; typed, the frames are part of a longer run
+    std::string lights;               ///< scene file; empty: the scene's own
     std::string cameras;
     std::string view;
     CameraOptions camera;
@@ -36,6 +37,7 @@ struct RenderOptions {
     std::string anti_aliasing;   ///< empty: taa, or ssaa:16 of a turntable
     std::string taa;             ///< comma-separated settings over the preset's
     std::optional<int> samples;  ///< of a finished picture; empty: 64
+    std::string denoise = "on";  ///< sampled light
     std::string dump;            ///< comma-separated planes
     int threads = 0;             ///< 0: all cores
     std::string simd;            ///< empty: the best

@@ -106,6 +106,8 @@ Json jsonOf(const RenderReport& report) {
     }
     json["stages"] = {{"transform_bin", stageStatistics(frames, &StageTimes::transform_bin_ms)},
                       {"raster", stageStatistics(frames, &StageTimes::raster_ms)},
+                      {"light", stageStatistics(frames, &StageTimes::light_ms)},
+                      {"denoise", stageStatistics(frames, &StageTimes::denoise_ms)},
                       {"taa", stageStatistics(frames, &StageTimes::taa_ms)},
                       {"output", stageStatistics(frames, &StageTimes::output_ms)}};
     json["total"] =

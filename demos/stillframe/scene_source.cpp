@@ -31,17 +31,7 @@ Outcome<Scene> sceneFromStandardInput() {
     return fromResult(loadSceneText(std::move(text), kStandardInput));
 }
 
-}  // namespace
-
-std::string modelName(const std::string& scene) {
-    if (scene == "-") {
-        return "stdin";
-    }
-    return scene.starts_with(kBuiltin) ? scene.substr(kBuiltin.size())
-                                       : std::filesystem::path(scene).stem().string();
-}
-
-Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder) {
+Outcome<Scene> sceneOf(const std::string& name, const std::filesystem::path& cache_folder) {
     if (name == "-") {
         return sceneFromStandardInput();
     }
@@ -54,6 +44,28 @@ Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& c
     }
     return builtinScene(name.substr(kBuiltin.size())).map_error([](const Error& error) {
         return Failure{ExitCode::usage, error.message};
+    });
+}
+
+}  // namespace
+
+std::string modelName(const std::string& scene) {
+    if (scene == "-") {
+        return "stdin";
+    }
+    return scene.starts_with(kBuiltin) ? scene.substr(kBuiltin.size())
+                                       : std::filesystem::path(scene).stem().string();
+}
+
+Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder,
+                         const std::string& lights) {
+    return sceneOf(name, cache_folder).and_then([&](Scene scene) -> Outcome<Scene> {
+        if (!lights.empty()) {
+            if (const auto loaded = fromResult(loadLights(lights, scene)); !loaded) {
+                return tl::make_unexpected(loaded.error());
+            }
+        }
+        return scene;
     });
 }
 

@@ -11,9 +11,10 @@
 namespace still::command {
 
 /// Opens FILE.obj, FILE.json, builtin:NAME or -, which is standard input with the text of either,
-/// with the help of a `cache_folder` if one is given (see loadScene). Its warnings are the caller's
-/// to print.
-Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder = {});
+/// with the help of a `cache_folder` if one is given (see loadScene), and lights it as the scene
+/// file `lights` says, if there is a name. Its warnings are the caller's to print.
+Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder = {},
+                         const std::string& lights = {});
 
 /// What {model} stands for: "courtyard" of builtin:courtyard, "a" of dir/a.obj, "stdin" of -.
 std::string modelName(const std::string& scene);

@@ -23,7 +23,7 @@ uint32_t FrameLoop::State::sampleOf(int frame, int subframe) const {
 /// Later sub-frames of a frame see the same instant: nothing has moved since the one before.
 static void freeze(FrameState& frame) {
     frame.cut = false;
-    frame.lighting_changed = false;
+    frame.lighting_changed = frame.sampled_light_changed = false;
     frame.changed_surfaces.clear();
     frame.turning_surfaces.clear();
     frame.camera_before = frame.camera;
@@ -54,7 +54,8 @@ TaaSettings FrameLoop::State::taaSettings() const {
 }
 
 static bool nothingHappens(const FrameState& frame) {
-    return !frame.cut && !frame.lighting_changed && frame.changed_surfaces.empty() &&
+    return !frame.cut && !frame.lighting_changed && !frame.sampled_light_changed &&
+           frame.changed_surfaces.empty() &&
            frame.camera.view_projection == frame.camera_before.view_projection &&
            std::none_of(frame.instances.begin(), frame.instances.end(),
                         [](const Instance& instance) { return instance.moved; });
@@ -63,12 +64,20 @@ static bool nothingHappens(const FrameState& frame) {
 /// Whether the frame leaves a finished picture as it is. Then neither geometry nor pixels are
 /// touched.
 bool FrameLoop::State::rests(const FrameState& frame) {
-    return gathers() && nothingHappens(frame) && taa.rest(taaSettings());
+    return temporal() && gathers() && nothingHappens(frame) && taa.rest(taaSettings());
 }
 
 /// Takes the sample that was just rasterized into the history.
-void FrameLoop::State::resolve(const FrameState& frame, const TaaFrame& evidence) {
+void FrameLoop::State::resolve(const FrameState& frame, TaaFrame evidence) {
+    if (!temporal()) {
+        return;
+    }
     if (gathers()) {
+        if (denoises()) {
+            evidence.light_age = light->denoiser.lightAge();
+        } else {
+            evidence.shading_changed |= frame.sampled_light_changed;
+        }
         taa.resolve(gbuffer, evidence, taaSettings(), workers);
         return;
     }
@@ -89,7 +98,7 @@ void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
     for (int i = 0; i < settings.subframes; ++i) {
         const uint32_t sample = sampleOf(frame, i);
         followCamera(state);
-        const SampleOffset offset = offsetOf(state, sample);
+        const SampleOffset offset = temporal() ? offsetOf(state, sample) : SampleOffset{};
         const TaaFrame evidence{.reset = state.cut,
                                 .shading_changed = state.lighting_changed,
                                 .changed_surfaces = state.changed_surfaces,
@@ -100,8 +109,9 @@ void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
                                 .repeats = settings.subframes - 1 - i};
         const bool rest = rests(state);
         counters = {};
-        if (!rest || settings.fresh_gbuffer) {
-            rasterizeSample(state, offset, sample, gathers() ? &evidence : nullptr, rest);
+        if (!rest || (settings.fresh_gbuffer && light == nullptr)) {
+            rasterizeSample(state, offset, sample, temporal() && gathers() ? &evidence : nullptr,
+                            rest);
         }
         if (!rest) {
             timed(times.taa_ms, [&] { resolve(state, evidence); });
@@ -118,6 +128,9 @@ void FrameLoop::State::resolveHistory(int frame) {
     for (int replayed = first; replayed <= frame; ++replayed) {
         times = {};
         resolveFrame(replayed, replayed == frame);
+    }
+    if (settings.anti_aliasing == AntiAliasing::fxaa) {
+        filterSample();
     }
     if (enlarges() && !shown) {
         timed(times.taa_ms, [&] { enlarge(); });

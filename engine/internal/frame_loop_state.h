@@ -1,16 +1,19 @@
 #pragma once
 // What a frame loop keeps, and the steps of a frame: frame_loop.cpp hands frames out,
-// frame_samples.cpp rasterizes, frame_history.cpp brings the past to a frame.
+// frame_samples.cpp rasterizes, frame_light.cpp adds sampled light, frame_history.cpp brings the
+// past to a frame.
 
 #include <algorithm>
 #include <vector>
 
 #include "engine/frame_loop.h"
 #include "engine/jitter.h"
+#include "postfx/denoise.h"
 #include "postfx/laboratory.h"
 #include "postfx/sample_sums.h"
 #include "postfx/spatial.h"
 #include "postfx/spatial_upscale.h"
+#include "rasterizer/light_sampler.h"
 
 namespace still {
 
@@ -24,12 +27,29 @@ inline ColourPlanes planesOf(const GBuffer& gbuffer) {
     return {gbuffer.red.view(), gbuffer.green.view(), gbuffer.blue.view()};
 }
 
+inline LightPlanes planesOf(const LightImages& images) {
+    return {
+        {images.direct_red.view(), images.direct_green.view(), images.direct_blue.view()},
+        {images.indirect_red.view(), images.indirect_green.view(), images.indirect_blue.view()}};
+}
+
+/// Of light that is sampled.
+struct LightStage {
+    LightSampler sampler;
+    LightImages noisy;  ///< one sample a pixel
+    LightChangeImages change;
+    Denoiser denoiser;
+};
+
 struct FrameLoop::State {
     State(const Scene& scene_in, const FrameSettings& settings_in, Workers& workers_in)
         : scene(scene_in),
           settings(settings_in),
           workers(workers_in),
           table(settings.tone_map, settings.exposure) {
+        if (scene.lights.sampled()) {
+            light = std::make_unique<LightStage>();
+        }
         windings.resize(scene.meshes.size());
         workers.parallelFor(int(windings.size()), 1, [&](int begin, int end, int) {
             for (int i = begin; i < end; ++i) {
@@ -46,7 +66,8 @@ struct FrameLoop::State {
     Taa taa;                ///< Method::gather
     Laboratory laboratory;  ///< Method::recursive
     SpatialFilter spatial;
-    SpatialUpscaler enlarger;  ///< policies that upscale
+    SpatialUpscaler enlarger;           ///< policies that upscale
+    std::unique_ptr<LightStage> light;  ///< of scenes with sampled light
     GBuffer gbuffer;        ///< what is resolved; tiles that nothing new is in keep earlier samples
     GBuffer fresh;          ///< FrameSettings::fresh_gbuffer, in frames that `gbuffer` has parts of
     bool in_parts = false;  ///< this is such a frame
@@ -81,6 +102,12 @@ struct FrameLoop::State {
     }
 
     bool temporal() const { return settings.anti_aliasing == AntiAliasing::taa; }
+    bool denoises() const {
+        return light != nullptr && settings.denoise == Denoise::svgf &&
+               settings.anti_aliasing != AntiAliasing::ssaa;
+    }
+    /// Whether a frame depends on those before it.
+    bool hasPast() const { return temporal() || denoises(); }
     bool hasStory() const {
         return temporal() && !upscales(settings.policy) && !gbuffer.red.empty();
     }
@@ -96,12 +123,13 @@ struct FrameLoop::State {
     RasterSettings rasterSettings() const;
     void rasterizeSample(const FrameState& frame, SampleOffset offset, uint32_t sample,
                          const TaaFrame* evidence = nullptr, bool rest = false);
+    void addLight(const DrawList& list, const FrameView& view, bool reset);
     void addRasterTimes(const StageTimes& sample);
     void followCamera(const FrameState& frame);
     SampleOffset offsetOf(const FrameState& frame, uint32_t sample) const;
     TaaSettings taaSettings() const;
     bool rests(const FrameState& frame);
-    void resolve(const FrameState& frame, const TaaFrame& evidence);
+    void resolve(const FrameState& frame, TaaFrame evidence);
     void resolveFrame(int frame, bool looked_at);
     void resolveHistory(int frame);
     ColourTargets resizeFiltered();

@@ -19,6 +19,10 @@ RasterSettings FrameLoop::State::rasterSettings() const {
         raster.mip_bias_fx8 = mipBias_fx8(policy);
         raster.camera_motion_only = !gathers() && policy.motion == MotionSource::camera;
     }
+    if (light != nullptr) {
+        raster.planes.normal = raster.planes.albedo = true;
+        raster.planes.motion |= denoises();
+    }
     return raster;
 }
 
@@ -46,7 +50,8 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
     StageTimes sample_times;
     timed(sample_times.transform_bin_ms, [&] {
         const auto facts = rasterizer.setUp(list, view, rasterSettings());
-        if (evidence != nullptr && !rest) {
+        // Sampled light changes anywhere, and is filtered over the borders of tiles.
+        if (evidence != nullptr && !rest && light == nullptr) {
             wanted = taa.plan(view.width, view.height, facts, *evidence, taaSettings());
         }
         rasterizer.transformAndBin(workers);
@@ -60,6 +65,9 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
             rasterizer.rasterize(fresh, workers);
         }
     });
+    if (light != nullptr) {
+        addLight(list, view, frame.cut);
+    }
     addRasterTimes(sample_times);
     counters = rasterizer.counters();
 }

@@ -31,6 +31,7 @@ class RecordReader {
   private:
     bool nextLine();
     bool readSize();
+    bool isNext(Stage stage) const;
     bool readStage(int stage);
     bool refuse(std::string_view expected);
 
@@ -76,6 +77,13 @@ bool RecordReader::readSize() {
     return true;
 }
 
+/// Whether the next line is one of this stage.
+bool RecordReader::isNext(Stage stage) const {
+    std::string_view line = text_.substr(0, text_.find('\n'));
+    takeWord(line);
+    return takeWord(line) == name(stage);
+}
+
 bool RecordReader::readStage(int stage) {
     std::string_view rest = line_;
     const auto frame = numberFrom<int>(takeWord(rest), 10);
@@ -115,7 +123,9 @@ Result<Record> RecordReader::read() {
     good = good && nextLine() && readSize();
     while (good && (!text_.empty() || record_.frames.empty())) {
         for (int stage = 0; good && stage < kStages; ++stage) {
-            good = nextLine() && readStage(stage);
+            if (!isOfSampledLight(Stage(stage)) || isNext(Stage(stage))) {
+                good = nextLine() && readStage(stage);
+            }
         }
     }
     if (!good) {
@@ -132,6 +142,9 @@ std::string recordText(const Record& record) {
     for (const Record::Frame& frame : record.frames) {
         for (int stage = 0; stage < kStages; ++stage) {
             const StageHash& hash = frame.stages[size_t(stage)];
+            if (isOfSampledLight(Stage(stage)) && hash.tiles.empty()) {
+                continue;
+            }
             text += std::to_string(frame.frame) + " " + name(Stage(stage)) + " " + hex(hash.whole) +
                     " ";
             for (const uint32_t tile : hash.tiles) {

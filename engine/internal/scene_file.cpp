@@ -35,6 +35,8 @@ class SceneFileReader {
     }
 
     Result<Scene> read();
+    /// See loadLights().
+    Result<void> readLightsFor(Scene& scene);
 
   private:
     void readObjects();
@@ -45,6 +47,7 @@ class SceneFileReader {
     void readCamera(const JsonCursor& cursor);
     void readCameraFile(const JsonCursor& file);
     void readViews(const JsonCursor& cursor);
+    void readLight();
     void readCuts(const JsonCursor& cursor);
     void chooseClipPlanes();
 
@@ -257,6 +260,39 @@ void SceneFileReader::readCuts(const JsonCursor& cursor) {
     }
 }
 
+/// What is lit, and by what.
+void SceneFileReader::readLight() {
+    const auto light = root_.find("light");
+    const auto lights = root_.find("lights");
+    scene_.automatic_light = !light && !lights;
+    if (light && lights) {
+        light->refuse("expected either \"light\" or \"lights\"");
+    } else if (light) {
+        scene_.lights = readSingleLight(*light);
+    } else if (lights) {
+        scene_.lights = readLights(*lights);
+    }
+    if (const auto background = root_.find("background")) {
+        scene_.background = readColour(*background);
+    }
+}
+
+Result<void> SceneFileReader::readLightsFor(Scene& scene) {
+    if (!root_.is(JsonValue::Type::object) || (!root_.find("light") && !root_.find("lights"))) {
+        root_.refuse("expected an object with \"light\" or \"lights\"");
+    }
+    scene_.background = scene.background;
+    readLight();
+    if (report_.error) {
+        return tl::make_unexpected(*report_.error);
+    }
+    scene.lights = std::move(scene_.lights);
+    scene.background = scene_.background;
+    scene.automatic_light = false;
+    scene.warnings.insert(scene.warnings.end(), report_.warnings.begin(), report_.warnings.end());
+    return {};
+}
+
 Result<Scene> SceneFileReader::read() {
     root_.expectKeys(
         {"name", "obj", "objects", "camera", "views", "light", "lights", "background", "cuts"},
@@ -273,19 +309,7 @@ Result<Scene> SceneFileReader::read() {
     if (const auto views = root_.find("views")) {
         readViews(*views);
     }
-    const auto light = root_.find("light");
-    const auto lights = root_.find("lights");
-    scene_.automatic_light = !light && !lights;
-    if (light && lights) {
-        light->refuse("expected either \"light\" or \"lights\"");
-    } else if (light) {
-        scene_.lights = readSingleLight(*light);
-    } else if (lights) {
-        scene_.lights = readLights(*lights);
-    }
-    if (const auto background = root_.find("background")) {
-        scene_.background = readColour(*background);
-    }
+    readLight();
     if (const auto cuts = root_.find("cuts")) {
         readCuts(*cuts);
     }
@@ -316,6 +340,16 @@ Result<Scene> loadSceneFile(const std::filesystem::path& file,
     return SceneFileReader(file, cache_folder, *tree).read().map([&](Scene scene) {
         scene.files.push_back(file.string());
         return scene;
+    });
+}
+
+Result<void> loadLights(const std::filesystem::path& file, Scene& scene) {
+    const Result<JsonValue> tree = readJson(file);
+    if (!tree) {
+        return tl::make_unexpected(tree.error());
+    }
+    return SceneFileReader(file, {}, *tree).readLightsFor(scene).map([&] {
+        scene.files.push_back(file.string());
     });
 }
 

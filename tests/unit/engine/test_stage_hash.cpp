@@ -13,10 +13,13 @@ constexpr int kWidth = 150, kHeight = 70;  // 3 × 2 tiles, the last ones cut
 struct Planes {
     GBuffer gbuffer;
     Image<uint16_t> red{kWidth, kHeight}, green{kWidth, kHeight}, blue{kWidth, kHeight};
+    LightImages light, denoised;
     Image<Rgb8> output{kWidth, kHeight};
 
     Planes() {
         gbuffer.resize(kWidth, kHeight, test::kAllPlanes);
+        light.resize(kWidth, kHeight);
+        denoised.resize(kWidth, kHeight);
         for (int y = 0; y < kHeight; ++y) {
             for (int x = 0; x < kWidth; ++x) {
                 gbuffer.depth.at(x, y) = uint32_t(x * y);
@@ -25,9 +28,15 @@ struct Planes {
             }
         }
     }
+    static LightPlanes planesOf(const LightImages& i) {
+        return {{i.direct_red.view(), i.direct_green.view(), i.direct_blue.view()},
+                {i.indirect_red.view(), i.indirect_green.view(), i.indirect_blue.view()}};
+    }
     StageHashes hashes() const {
         FrameResult frame;
         frame.gbuffer = &gbuffer;
+        frame.light = planesOf(light);
+        frame.denoised = planesOf(denoised);
         frame.output = output.view();
         frame.linear = {red.view(), green.view(), blue.view()};
         return hashStages(frame);
@@ -53,6 +62,12 @@ const Flip kFlips[] = {
      }},
     {Stage::motion, [](Planes& p, int x, int y,
                        int bit) { p.gbuffer.depth_before.at(x, y) ^= uint16_t(1 << bit % 16); }},
+    {Stage::albedo, [](Planes& p, int x, int y,
+                       int bit) { p.gbuffer.albedo_green.at(x, y) ^= uint16_t(1 << bit % 16); }},
+    {Stage::light, [](Planes& p, int x, int y,
+                      int bit) { p.light.indirect_red.at(x, y) ^= uint16_t(1 << bit % 16); }},
+    {Stage::denoised, [](Planes& p, int x, int y,
+                         int bit) { p.denoised.direct_blue.at(x, y) ^= uint16_t(1 << bit % 16); }},
     {Stage::color,
      [](Planes& p, int x, int y, int bit) { p.gbuffer.red.at(x, y) ^= uint16_t(1 << bit % 16); }},
     {Stage::color,

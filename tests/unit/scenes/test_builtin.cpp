@@ -151,7 +151,7 @@ TEST_CASE("scenes: sizes are as announced", "[scenes][unit]") {
             CHECK(scene.objects.size() >= 12);
             CHECK(scene.views.size() >= 5);
         } else {
-            CHECK(scene.triangleCount() < 2000);
+            CHECK(scene.triangleCount() < 10000);
         }
     }
 }

@@ -1,0 +1,35 @@
+// Light that is sampled: traced, denoised, and put into the G-buffer's colours before they are
+// anti-aliased.
+
+#include "engine/internal/frame_loop_state.h"
+
+namespace still {
+
+static LightChange changeOf(const LightChangeImages& images) {
+    return {images.direct_before.view(), images.direct_now.view(), images.indirect_before.view(),
+            images.indirect_now.view()};
+}
+
+/// Of the sample that was just rasterized. `reset`: it has no past.
+void FrameLoop::State::addLight(const DrawList& list, const FrameView& view, bool reset) {
+    LightStage& stage = *light;
+    const bool keeps = denoises();
+    DenoiseFrame frame{.reset = reset};
+    timed(times.light_ms, [&] {
+        stage.sampler.setUp(list, view, settings.simd, workers);
+        if (keeps && stage.sampler.changes(stage.change, workers) && !reset) {
+            frame.change = changeOf(stage.change);
+        }
+        stage.sampler.sample(gbuffer, stage.noisy, keeps, workers);
+    });
+    LightPlanes clean = planesOf(stage.noisy);
+    timed(keeps ? times.denoise_ms : times.light_ms, [&] {
+        if (keeps) {
+            stage.denoiser.run(gbuffer, clean, frame, settings.simd, workers);
+            clean = stage.denoiser.light();
+        }
+        remodulate(gbuffer, clean, {}, settings.simd, workers);
+    });
+}
+
+}  // namespace still
