@@ -33,12 +33,12 @@ struct UpscaleSettings {
 /// Owns the history. resolve() must be called once per frame, in order. The frames' size may change
 /// from one to the next: the history stays. Offsets of the samples (TaaFrame::jitter_x_fx8) and
 /// motion are in 1/256 of the frame's pixels.
-class Upscaler {
+class TemporalUpscaler {
   public:
-    Upscaler();
-    ~Upscaler();
-    Upscaler(const Upscaler&) = delete;
-    Upscaler& operator=(const Upscaler&) = delete;
+    TemporalUpscaler();
+    ~TemporalUpscaler();
+    TemporalUpscaler(const TemporalUpscaler&) = delete;
+    TemporalUpscaler& operator=(const TemporalUpscaler&) = delete;
 
     /// Taa::plan() of a frame of this size.
     std::span<const uint8_t> plan(int frame_width, int frame_height,

@@ -101,7 +101,7 @@ HWY_INLINE bool smooth(const Job& job, const Rows& rows, VS id, VS depth) {
             nearest = hn::Max(nearest, load(rows.depth[j] + i));
         }
     }
-    const MS step = hn::Gt(hn::SaturatedSub(nearest, depth), set(kDepthTolerance));
+    const MS step = hn::Gt(hn::SaturatedSub(nearest, depth), set(job.centre_tolerance));
     const MS seam = hn::Ne(hn::And(other, set(kSurfaceMask)), zero());
     return !any(hn::Or(step, seam));
 }
@@ -124,7 +124,7 @@ HWY_INLINE VS findNearest(const Job& job, const Rows& rows, SeenLanes& seen) {
     const VS mask = set(kSurfaceMask);
     const MS same = hn::Eq(hn::And(best.id, mask), hn::And(seen.id, mask));
     const VS step = hn::SaturatedSub(best.depth, seen.depth);
-    const MS centre = hn::AndNot(hn::Gt(step, set(kDepthTolerance)), same);
+    const MS centre = hn::AndNot(hn::Gt(step, set(job.centre_tolerance)), same);
     seen.slope = hn::IfThenElseZero(hn::AndNot(centre, same), hn::Min(step, set(kMaxSlope)));
     seen.id = hn::IfThenElse(centre, seen.id, best.id);
     seen.depth = hn::IfThenElse(centre, seen.depth, best.depth);

@@ -36,7 +36,7 @@ Owner seenOwner(const Job& job, int x, int y) noexcept {
     const ptrdiff_t centre = y * job.stride + x;
     // What the centre itself shows of the owner is nearer to the pixel's own motion.
     if (surfaceOf(job.now.id[centre]) == surfaceOf(job.now.id[best]) &&
-        depthAt(best) - depthAt(centre) <= kDepthTolerance) {
+        depthAt(best) - depthAt(centre) <= job.centre_tolerance) {
         best = centre;
     }
     Owner owner;

@@ -90,6 +90,9 @@ struct Job {
     int sample_cap = 64;
     int settled = 8;  ///< min(kSettled, sample_cap)
     bool camera_moved = false;
+    /// What the centre's sample shows of the nearest one's surface may lie so much farther and own
+    /// the pixel still: kDepthTolerance, more where pixels are large.
+    int centre_tolerance = 48;
 };
 
 /// A tile's pixels, clipped to the image.

@@ -20,13 +20,16 @@ using taa::TileRect;
 /// One axis of the image against that of a frame.
 struct Axis {
     int frame = 0, image = 0;  ///< lengths in pixels
+    int ratio_fx8 = 256;       ///< image / frame, rounded half up
+    int inverse_fx16 = 65536;  ///< frame / image, rounded half up
 
-    /// Where an output pixel's centre lies among the frame's, whose pixel 0 has its centre at 0:
-    /// 1/256 of its pixels, rounded half up.
-    int placeOf_fx8(int output) const {
-        const int64_t twice = (2 * int64_t(output) + 1) * frame * 256;
-        return int(floorDiv<int64_t>(twice + image, 2 * int64_t(image))) - 128;
-    }
+    Axis() = default;
+    Axis(int frame_length, int image_length)
+        : frame(frame_length),
+          image(image_length),
+          ratio_fx8((image * 256 + frame / 2) / frame),
+          inverse_fx16(int((int64_t(frame) * 65536 + image / 2) / image)) {}
+
     /// The first output pixel whose centre is not before the left edge of the frame's pixel.
     int firstOf(int pixel) const {
         return int(floorDiv<int64_t>(2 * int64_t(pixel) * image + frame - 1, 2 * int64_t(frame)));
@@ -36,6 +39,35 @@ struct Axis {
         const int64_t place_fx8 = 256 * int64_t(pixel) + 128 + jitter_fx8;
         return int(place_fx8 * image / (256 * int64_t(frame)));
     }
+    /// The frame's pixel that holds an output pixel's centre.
+    int pixelOf(int output) const {
+        return int((2 * int64_t(output) + 1) * frame / (2 * int64_t(image)));
+    }
+    /// Where an output pixel's centre lies from that of the frame's pixel, 1/256 output pixel,
+    /// rounded half up.
+    int offsetOf(int output, int pixel) const {
+        const int64_t twice = (2 * int64_t(output) + 1) * frame - (2 * int64_t(pixel) + 1) * image;
+        return int(floorDiv<int64_t>(twice * 256 + frame, 2 * int64_t(frame)));
+    }
+    /// Distances in 1/256 pixel of the image to 1/256 pixel of the frame, rounded half up …
+    int toFrame(int distance_fx8) const { return roundShift(distance_fx8 * inverse_fx16, 16); }
+    /// … and back, rounded down.
+    int toImage(int distance_fx8) const { return (distance_fx8 * ratio_fx8) >> 8; }
+    /// A place in a frame of another size, 1/256 pixel with 0 at the centre of pixel 0.
+    int fromSize(int place_fx8, const Axis& other) const {
+        if (other.frame == frame) {
+            return place_fx8;
+        }
+        const int64_t twice = 2 * (int64_t(place_fx8) + 128) * frame + other.frame;
+        return int(floorDiv<int64_t>(twice, 2 * int64_t(other.frame))) - 128;
+    }
+};
+
+/// A kept frame; it may have had another size than the present one.
+struct Slot {
+    SlotIn in;
+    Axis x, y;
+    ptrdiff_t stride = 0;
 };
 
 /// Sums of the samples that fell into still output pixels, row by row as the image is.
@@ -50,11 +82,9 @@ struct Job {
     /// at most, its sums and its image are null.
     taa::Job frame;
     Axis x, y;
-    int frames = 1;                                         ///< valid slots, this frame's included
-    SlotIn slot[kMaxUpscaleRing];                           ///< slot[k] is k frames old …
-    Axis slot_x[kMaxUpscaleRing], slot_y[kMaxUpscaleRing];  ///< … and may be of another size
-    ptrdiff_t slot_stride[kMaxUpscaleRing] = {};
-    ptrdiff_t stride = 0;  ///< of the image's planes, in elements
+    int frames = 1;              ///< valid slots, this frame's included
+    Slot slot[kMaxUpscaleRing];  ///< slot[k] is k frames old
+    ptrdiff_t stride = 0;        ///< of the image's planes, in elements
     Sums sums;
     uint16_t* shown[3] = {};         ///< the image
     uint8_t* shown_count = nullptr;  ///< samples in it, up to 255
@@ -66,6 +96,11 @@ struct Job {
 inline TileRect outputRect(const Job& job, const TileRect& tile) {
     return {job.x.firstOf(tile.x0), job.y.firstOf(tile.y0), job.x.firstOf(tile.x1),
             job.y.firstOf(tile.y1)};
+}
+
+/// Index of the frame's sample in whose pixel an output pixel's centre lies.
+inline ptrdiff_t nearestInFrame(const Job& job, int x, int y) {
+    return job.y.pixelOf(y) * job.frame.stride + job.x.pixelOf(x);
 }
 
 }  // namespace still::upscale
