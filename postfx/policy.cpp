@@ -16,7 +16,7 @@ constexpr TaaPolicy gathering(int ring) {
     return policy;
 }
 
-constexpr TaaPolicy upscaling(int ratio_fx8, Upscaler upscaler) {
+constexpr TaaPolicy upscaling(int ratio_fx8, UpscaleMethod upscaler) {
     TaaPolicy policy;
     policy.ratio_fx8 = ratio_fx8;
     policy.upscaler = upscaler;
@@ -28,14 +28,14 @@ constexpr std::array<TaaPreset, 9> kOurs{{
     {"still", "ours: gathers 8 raw frames along the motion", gathering(8)},
     {"fast", "ours, from 4 frames", gathering(4)},
     {"tiny", "ours, from 2 frames", gathering(2)},
-    {"quality", "ours, rendered at 1/1.5 per axis", upscaling(kRatio1_5, Upscaler::temporal)},
-    {"balanced", "ours, rendered at 1/1.7 per axis", upscaling(kRatio1_7, Upscaler::temporal)},
-    {"performance", "ours, rendered at 1/2 per axis", upscaling(kRatio2, Upscaler::temporal)},
-    {"ultra", "ours, rendered at 1/3 per axis", upscaling(kRatio3, Upscaler::temporal)},
+    {"quality", "ours, rendered at 1/1.5 per axis", upscaling(kRatio1_5, UpscaleMethod::temporal)},
+    {"balanced", "ours, rendered at 1/1.7 per axis", upscaling(kRatio1_7, UpscaleMethod::temporal)},
+    {"performance", "ours, rendered at 1/2 per axis", upscaling(kRatio2, UpscaleMethod::temporal)},
+    {"ultra", "ours, rendered at 1/3 per axis", upscaling(kRatio3, UpscaleMethod::temporal)},
     {"bicubic", "still at 1/1.5 per axis, enlarged by Catmull-Rom",
-     upscaling(kRatio1_5, Upscaler::bicubic)},
+     upscaling(kRatio1_5, UpscaleMethod::bicubic)},
     {"edge", "still at 1/1.5 per axis, enlarged along edges (AMD's FSR 1 EASU)",
-     upscaling(kRatio1_5, Upscaler::edge)},
+     upscaling(kRatio1_5, UpscaleMethod::edge)},
 }};
 
 constexpr auto makePresets() {

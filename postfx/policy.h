@@ -75,7 +75,7 @@ enum class AntiFlicker : uint8_t {
 enum class Tone : uint8_t { linear, reinhard };  ///< in which blending takes place
 
 /// How a picture becomes larger than what is rendered: TaaPolicy::ratio_fx8.
-enum class Upscaler : uint8_t {
+enum class UpscaleMethod : uint8_t {
     temporal,  ///< postfx/upscale.h; Method::recursive takes `edge` instead
     bicubic,   ///< anti-aliased at the rendered size, then postfx/spatial_upscale.h
     edge,      ///< the same along the edges
@@ -124,7 +124,7 @@ struct TaaPolicy {
     /// Output size by rendered size, per axis: kNativeRatio_fx8 … kMaxRatio_fx8. The rendered size
     /// is rounded up to whole pixels.
     int ratio_fx8 = 256;
-    Upscaler upscaler = Upscaler::temporal;
+    UpscaleMethod upscaler = UpscaleMethod::temporal;
     int mip_bias_fx8 = 0;
     int sharpness_q15 = 0;  ///< of the sharpening after the resolve
 
@@ -137,7 +137,7 @@ constexpr bool upscales(const TaaPolicy& policy) {
 }
 /// … that history makes good: postfx/upscale.h.
 constexpr bool upscalesInTime(const TaaPolicy& policy) {
-    return upscales(policy) && policy.upscaler == Upscaler::temporal &&
+    return upscales(policy) && policy.upscaler == UpscaleMethod::temporal &&
            policy.method == Method::gather;
 }
 /// Width or height of the frames for one of the picture.

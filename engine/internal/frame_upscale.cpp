@@ -20,7 +20,7 @@ void FrameLoop::State::enlarge() {
     for (Image<uint16_t>* plane : {&enlarged.red, &enlarged.green, &enlarged.blue}) {
         plane->resize(settings.width, settings.height);
     }
-    const bool bicubic = settings.policy.upscaler == Upscaler::bicubic;
+    const bool bicubic = settings.policy.upscaler == UpscaleMethod::bicubic;
     enlarger.run(gathers() ? taa.colour() : laboratory.colour(),
                  bicubic ? EnlargeFilter::bicubic : EnlargeFilter::edge,
                  {enlarged.red.view(), enlarged.green.view(), enlarged.blue.view()}, settings.simd,
