@@ -87,6 +87,8 @@ struct FilterImages {
 
 /// Blocks on each side whose samples tell how light changed in one.
 constexpr int kChangeReach = 2;
+/// What few samples say of a change is less than there is.
+constexpr float kUnsureGain = 2.0f;
 
 /// From the samples of a block and its neighbours. Where all of them changed by the same factor,
 /// that is what happened to the light; the rest is uncertain.
@@ -115,7 +117,7 @@ BlockChange changeOf(ImageView<const uint16_t> before, ImageView<const uint16_t>
             off += std::abs(float(now.row(j)[i]) - ratio * float(before.row(j)[i]));
         }
     }
-    return {ratio, std::min(1.0f, off / float(sum_most))};
+    return {ratio, std::min(1.0f, kUnsureGain * off / float(sum_most))};
 }
 
 }  // namespace
@@ -126,7 +128,6 @@ struct Denoiser::State {
     std::array<PastImages, 2> past;
     int cursor = 0;
     bool has_past = false;
-    int since_change = 0;  ///< frames since a reset or since anything changed, held at kNoBound
     std::array<FilterImages, 2> filtered;
     std::array<Image<float>, 2> step;
     std::array<std::vector<BlockChange>, kParts> change;
@@ -212,9 +213,6 @@ Job Denoiser::State::makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, b
     job.now = past[size_t(cursor)].pointers();
     job.first = filtered[0].pointers();
     job.light_age = light_age.view().data;
-    if (since_change >= denoising::kYoungFrames) {
-        job.oldest = std::min(255, since_change - denoising::kYoungFrames + denoising::kYoungKept);
-    }
     return job;
 }
 
@@ -232,7 +230,6 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
         s.noteChange(frame.change, workers);
     }
     s.cursor = 1 - s.cursor;
-    s.since_change = changed || !s.has_past ? 0 : std::min(s.since_change + 1, denoising::kLongest);
     const Job job = s.makeJob(gbuffer, noisy, changed);
     const denoising::Kernels kernels = denoising::kernels(simd);
     s.eachTile(workers, [&](const TileRect& tile) { kernels.guides(job, tile); });

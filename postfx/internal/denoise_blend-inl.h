@@ -256,7 +256,7 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
     const MF has_past = hn::Gt(found.weight, zero);
     const VF longest =
         hn::IfThenElse(exact, set(float(kLongest - 1)), set(float(kLongestMoving - 1)));
-    VF light_age = set(float(job.oldest));
+    VF light_age = set(255.0f);
     for (int p = 0; p < kParts; ++p) {
         const VF even = hn::Div(one, hn::Add(hn::Min(found.count[p], longest), one));
         const VF grown = hn::Add(even, hn::Mul(hn::Sub(one, even), change.unsure[p]));
@@ -280,7 +280,9 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
         const VF bound = hn::IfThenElse(
             hn::Gt(drift, zero),
             hn::Min(set(255.0f), hn::Div(set(kAgeDrift), hn::Max(drift, set(1e-9f)))), set(255.0f));
-        const VF older = hn::Min(hn::Add(found.age[p], one), set(255.0f));
+        const MF grown_up = hn::And(exact, hn::Eq(found.count[p], set(float(kYoungFrames - 1))));
+        const VF oldest = hn::IfThenElse(grown_up, set(float(kYoungKept)), set(255.0f));
+        const VF older = hn::Min(hn::Add(found.age[p], one), oldest);
         const VF age = hn::IfThenElse(has_past, hn::Min(older, bound), set(255.0f));
         storeByte(hn::IfThenElseZero(surface, age), job.now.age[p] + at);
         light_age = hn::Min(light_age, hn::Floor(hn::Add(age, set(0.5f))));
@@ -339,7 +341,9 @@ HWY_NOINLINE VF variedAroundLanes(const Job& job, int part, int x, int y) {
         }
     }
     const VF mean = hn::Div(sum, total);
-    return hn::Max(zero, hn::Sub(hn::Div(squares, total), hn::Mul(mean, mean)));
+    const VF off = hn::Sub(pastLuminanceLanes(job, part, at), mean);
+    return hn::Max(hn::Mul(set(kOutlier), hn::Mul(off, off)),
+                   hn::Sub(hn::Div(squares, total), hn::Mul(mean, mean)));
 }
 
 HWY_ATTR void varianceTile(const Job& job, const TileRect& tile) noexcept {

@@ -55,7 +55,6 @@ struct Job {
     int blocks_x = 0;
     FilterPlanes first;  ///< what the first pass of the filter reads
     uint8_t* light_age = nullptr;
-    int oldest = 255;  ///< of light_age
 };
 
 }  // namespace still::denoising

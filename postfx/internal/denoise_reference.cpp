@@ -129,7 +129,7 @@ void blendPixel(const Job& job, int x, int y) noexcept {
         return;
     }
     const Found found = findPast(job, x, y);
-    int light_age = job.oldest;
+    int light_age = 255;
     for (int p = 0; p < kParts; ++p) {
         const BlockChange change = changeAt(job, p, x, y);
         const float longest = float(found.exact ? kLongest : kLongestMoving);
@@ -150,7 +150,9 @@ void blendPixel(const Job& job, int x, int y) noexcept {
         job.now.count[p][at] = uint8_t(int(1.0f / share + 0.5f));
         const float drift = std::max(std::abs(change.ratio - 1.0f), change.unsure);
         const float bound = drift > 0 ? std::min(255.0f, kAgeDrift / drift) : 255.0f;
-        const float age = std::min(std::min(found.age[p] + 1, 255.0f), bound);
+        const bool grown_up = found.exact && found.count[p] == float(kYoungFrames - 1);
+        const float older = std::min(found.age[p] + 1, grown_up ? float(kYoungKept) : 255.0f);
+        const float age = std::min(older, bound);
         job.now.age[p][at] = uint8_t(int((found.weight > 0 ? age : 255.0f) + 0.5f));
         light_age = std::min(light_age, int(job.now.age[p][at]));
     }
@@ -187,7 +189,8 @@ float variedAround(const Job& job, int part, int x, int y) {
         }
     }
     const float mean = sum / total;
-    return std::max(0.0f, squares / total - mean * mean);
+    const float off = pastLuminance(job, part, at) - mean;
+    return std::max(kOutlier * (off * off), squares / total - mean * mean);
 }
 
 /// Reversed depth is flat over a flat surface: the smaller of the differences to both sides is the

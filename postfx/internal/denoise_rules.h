@@ -33,6 +33,9 @@ constexpr int kShort = 4;
 /// … of so many pixels on each side whose logDepth16 differs by at most this.
 constexpr int kAround = 3;
 constexpr int kAroundTolerance = 6 * kDepthTolerance;
+/// A pixel that is apart from them by so much has at least this times its square as variance: else
+/// nobody would be like it, and it would stay as it is.
+constexpr float kOutlier = 4.0f;
 
 /// Light may have drifted by this share of itself over the frames that TAA takes.
 constexpr float kAgeDrift = 0.06f;
@@ -67,7 +70,7 @@ constexpr float kCentre = 0.25f;
 /// The same of the window over which variance is averaged.
 constexpr float kSmooth[3] = {0.25f, 0.5f, 0.25f};
 /// Luminances may differ by so many standard deviations.
-constexpr float kSigmas = 4.0f;
+constexpr float kSigmas = 7.0f;
 /// … and by so much more, in units of the planes.
 constexpr float kLeastSpan = 1e-3f;
 /// Squared distance of normals at which nothing is taken.
