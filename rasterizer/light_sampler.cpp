@@ -94,8 +94,8 @@ struct LightSampler::State {
     std::vector<Carry> carries;
 
     int blocksAcross() const { return (kept_width + kLightBlock - 1) / kLightBlock; }
-    void draw(LightBatch& batch, int i, int x, int y, const SampleNumbers& sample) const;
-    void collect(const GBuffer& gbuffer, const PixelRays& pixels, const SampleNumbers& sample,
+    void draw(LightBatch& batch, int i, int x, int y, const PixelNumbers::Tile& tile) const;
+    void collect(const GBuffer& gbuffer, const PixelRays& pixels, const PixelNumbers::Tile& tile,
                  int x0, int y0, Scratch& s) const;
     void store(GBuffer& gbuffer, LightImages& out, int x0, int y0, bool keep, const Scratch& s);
     KeptSample* keptAt(int x, int y);
@@ -124,17 +124,17 @@ void LightSampler::setUp(const DrawList& list, const FrameView& view, SimdTarget
 // ---- sampling --------------------------------------------------------------------------------
 
 void LightSampler::State::draw(LightBatch& batch, int i, int x, int y,
-                               const SampleNumbers& sample) const {
-    for (int use = 0; use < kRandomUses; ++use) {
-        const RandomPair pixel = numbers.at(x, y, RandomUse(use));
-        const RandomPair& one = sample.pairs[size_t(use)];
-        batch.random[use][i] = {pixel.x ^ one.x, pixel.y ^ one.y};
+                               const PixelNumbers::Tile& tile) const {
+    for (uint32_t uses = scene.random_uses; uses != 0; uses &= uses - 1) {
+        const int use = std::countr_zero(uses);
+        batch.random[use][i] = tile.at(x, y, RandomUse(use));
     }
 }
 
 /// The surface points of a block's pixels.
 void LightSampler::State::collect(const GBuffer& gbuffer, const PixelRays& pixels,
-                                  const SampleNumbers& sample, int x0, int y0, Scratch& s) const {
+                                  const PixelNumbers::Tile& tile, int x0, int y0,
+                                  Scratch& s) const {
     LightBatch& batch = s.batch;
     batch.count = 0;
     const int x1 = std::min(x0 + kBlock, gbuffer.width());
@@ -153,7 +153,7 @@ void LightSampler::State::collect(const GBuffer& gbuffer, const PixelRays& pixel
             batch.points[i] = pixels.pointAt(x, y, std::bit_cast<float>(gbuffer.depth.at(x, y)),
                                              normalized({n.x, n.y, n.z}));
             batch.points[i].shininess = scene.surfaces[surface].shininess;
-            draw(batch, i, x, y, sample);
+            draw(batch, i, x, y, tile);
         }
     }
 }
@@ -268,9 +268,10 @@ void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers
                 continue;
             }
             const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
+            const PixelNumbers::Tile random = state.numbers.tileOf(x0, y0, sample);
             for (int y = y0; y < std::min(y0 + kTileSize, view.height); y += kBlock) {
                 for (int x = x0; x < std::min(x0 + kTileSize, view.width); x += kBlock) {
-                    state.collect(gbuffer, pixels, sample, x, y, scratch);
+                    state.collect(gbuffer, pixels, random, x, y, scratch);
                     lightBatch(state.scene, scratch.batch, scratch.hits);
                     state.store(gbuffer, out, x, y, keep, scratch);
                 }
@@ -313,7 +314,8 @@ void LightSampler::State::traceAgain(int begin, int end, LightChangeImages& out,
         }
         block[batch.count] = b;
         batch.points[batch.count] = carried(sample);
-        draw(batch, batch.count++, sample.x, sample.y, numbers_then);
+        draw(batch, batch.count++, sample.x, sample.y,
+             numbers.tileOf(sample.x, sample.y, numbers_then));
     }
     lightBatch(scene, batch, s.hits);
     for (int i = 0; i < batch.count; ++i) {

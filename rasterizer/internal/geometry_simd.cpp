@@ -11,33 +11,12 @@
 // foreach_target must come before highway.h.
 #include <hwy/highway.h>
 
-#include <array>
-
 #include "rasterizer/fixed.h"
 #include "rasterizer/internal/dispatch.h"
+#include "rasterizer/internal/packed_lanes.h"
 #include "rasterizer/internal/triangles_reference.h"
 #include "rasterizer/internal/vertex_reference.h"
 
-#ifndef STILL_PACKED_LANES  // once, not per target
-#define STILL_PACKED_LANES
-namespace still::internal {
-
-/// For each set of up to 8 lanes their numbers in order.
-constexpr std::array<std::array<uint8_t, 8>, 256> kPackedLanes = [] {
-    std::array<std::array<uint8_t, 8>, 256> table{};
-    for (size_t set = 0; set < table.size(); ++set) {
-        size_t count = 0;
-        for (uint8_t lane = 0; lane < 8; ++lane) {
-            if ((set >> lane & 1) != 0) {
-                table[set][count++] = lane;
-            }
-        }
-    }
-    return table;
-}();
-
-}  // namespace still::internal
-#endif
 
 // These rest on all of the above.
 // clang-format off

@@ -83,12 +83,16 @@ PixelNumbers::PixelNumbers() {
     }
 }
 
-RandomPair PixelNumbers::at(int x, int y, RandomUse use) const {
-    const uint32_t in_tile = uint32_t(y % kTileSize * kTileSize + x % kTileSize);
-    const uint32_t entry = table_[uint32_t(use) * kTileSize * kTileSize + in_tile];
-    const uint32_t tile = uint32_t(y / kTileSize) << 16 | uint32_t(x / kTileSize);
-    const uint32_t shift = hashed(hashed(tile + kTileSeed) + use);
-    return {(entry & 0xFFFF0000u) ^ shift, entry << 16 ^ hashed(shift)};
+PixelNumbers::Tile PixelNumbers::tileOf(int x, int y, const SampleNumbers& sample) const {
+    Tile tile;
+    tile.table_ = table_.data();
+    const uint32_t number = uint32_t(y / kTileSize) << 16 | uint32_t(x / kTileSize);
+    for (uint32_t use = 0; use < kRandomUses; ++use) {
+        const uint32_t shift = hashed(hashed(number + kTileSeed) + use);
+        const RandomPair& one = sample.pairs[use];
+        tile.shifts_.pairs[use] = {shift ^ one.x, hashed(shift) ^ one.y};
+    }
+    return tile;
 }
 
 }  // namespace still::internal

@@ -41,7 +41,24 @@ SampleNumbers numbersOfSample(uint32_t sample);
 class PixelNumbers {
   public:
     PixelNumbers();
-    RandomPair at(int x, int y, RandomUse use) const;
+
+    /// Those of one tile and sample. Valid as long as this.
+    class Tile {
+      public:
+        RandomPair at(int x, int y, RandomUse use) const {
+            const uint32_t in_tile = uint32_t(y % kTileSize * kTileSize + x % kTileSize);
+            const uint32_t entry = table_[uint32_t(use) * kTileSize * kTileSize + in_tile];
+            const RandomPair& shift = shifts_.pairs[use];
+            return {(entry & 0xFFFF0000u) ^ shift.x, entry << 16 ^ shift.y};
+        }
+
+      private:
+        friend class PixelNumbers;
+        const uint32_t* table_ = nullptr;
+        SampleNumbers shifts_;
+    };
+    /// Of the tile that the pixel is in.
+    Tile tileOf(int x, int y, const SampleNumbers& sample) const;
 
   private:
     std::vector<uint32_t> table_;  ///< of each use, kTileSize² pixels: x in the high half, y low

@@ -30,6 +30,7 @@ struct LightScene {
     TraceKernels trace{};
     const DrawList* list = nullptr;
     std::vector<AreaLight> lights;
+    uint32_t random_uses = 0;          ///< bit RandomUse: what is drawn for
     std::vector<LitSurface> surfaces;  ///< [0] is the background
     // Of the sun: towards it, and two directions across of the length of its disc's radius.
     Float3 to_sun{}, sun_across_u{}, sun_across_v{};

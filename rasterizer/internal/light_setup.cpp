@@ -19,6 +19,21 @@ float luminanceOf(const Float3& c) {
 
 }  // namespace
 
+/// Numbers are drawn for the rays that there are, and no others.
+static uint32_t usesOf(const SampledLight& sampled) {
+    const bool bounce = sampled.ambient == AmbientLight::bounce;
+    uint32_t uses = 1u << kRandomHoles;
+    const auto add = [&](bool wanted, RandomUse use) { uses |= wanted ? 1u << use : 0u; };
+    const bool areas = !sampled.spheres.empty() || !sampled.rectangles.empty();
+    add(sampled.sun_shadow == SunShadow::traced, kRandomSun);
+    add(areas, kRandomLight);
+    add(sampled.spheres.size() + sampled.rectangles.size() > 1, kRandomPick);
+    add(bounce || sampled.ambient == AmbientLight::traced_occlusion, kRandomHemisphere);
+    add(bounce && sampled.sun_shadow != SunShadow::none, kRandomHitSun);
+    add(bounce && areas, kRandomHitLight);
+    return uses;
+}
+
 bool traces(const SampledLight& sampled) {
     return sampled.sun_shadow == SunShadow::traced || !sampled.spheres.empty() ||
            !sampled.rectangles.empty() || sampled.ambient == AmbientLight::traced_occlusion ||
@@ -59,6 +74,7 @@ void TreeKeeper::update(const DrawList& list, SceneTree& tree, Workers& workers)
 
 void setUpLights(const DrawList& list, LightScene& scene) {
     scene.list = &list;
+    scene.random_uses = usesOf(list.lighting.sampled);
     const SampledLight& sampled = list.lighting.sampled;
     scene.lights.clear();
     for (const SphereLight& sphere : sampled.spheres) {

@@ -19,25 +19,21 @@ HWY_INLINE uint32_t maskBits(D d, M mask) {
 template <bool kWithNear>
 HWY_INLINE uint32_t boxMask(const BvhNode& node, const TraceRay& ray, float end, float* near_t) {
     const Eight d;
-    const auto o_x = hn::Set(d, ray.origin[0]), o_y = hn::Set(d, ray.origin[1]);
-    const auto o_z = hn::Set(d, ray.origin[2]);
-    const auto i_x = hn::Set(d, ray.inverse[0]), i_y = hn::Set(d, ray.inverse[1]);
-    const auto i_z = hn::Set(d, ray.inverse[2]);
-    const float* near_x = node.bounds[ray.near_bound[0]][0];
-    const float* near_y = node.bounds[ray.near_bound[1]][1];
-    const float* near_z = node.bounds[ray.near_bound[2]][2];
-    const float* far_x = node.bounds[1 - ray.near_bound[0]][0];
-    const float* far_y = node.bounds[1 - ray.near_bound[1]][1];
-    const float* far_z = node.bounds[1 - ray.near_bound[2]][2];
+    const auto o_x = hn::Set(d, ray.origin[0]), i_x = hn::Set(d, ray.inverse[0]);
+    const auto o_y = hn::Set(d, ray.origin[1]), i_y = hn::Set(d, ray.inverse[1]);
+    const auto o_z = hn::Set(d, ray.origin[2]), i_z = hn::Set(d, ray.inverse[2]);
+    const float* bounds = node.bounds[0][0];
     uint32_t mask = 0;
     for (size_t i = 0; i < size_t(kTreeWidth); i += hn::Lanes(d)) {
-        const auto at = [&](const float* bound, auto o, auto inverse) HWY_ATTR {
-            return hn::Mul(hn::Sub(hn::Load(d, bound + i), o), inverse);
+        const auto at = [&](size_t bound, auto o, auto inverse) HWY_ATTR {
+            return hn::Mul(hn::Sub(hn::Load(d, bounds + bound + i), o), inverse);
         };
-        auto entry = hn::Max(hn::Zero(d), at(near_x, o_x, i_x));
-        entry = hn::Max(hn::Max(entry, at(near_y, o_y, i_y)), at(near_z, o_z, i_z));
-        auto exit = hn::Min(hn::Set(d, end), at(far_x, o_x, i_x));
-        exit = hn::Min(hn::Min(exit, at(far_y, o_y, i_y)), at(far_z, o_z, i_z));
+        const auto entry =
+            hn::Max(hn::Max(hn::Zero(d), at(ray.near_at[0], o_x, i_x)),
+                    hn::Max(at(ray.near_at[1], o_y, i_y), at(ray.near_at[2], o_z, i_z)));
+        const auto exit =
+            hn::Min(hn::Min(hn::Set(d, end), at(ray.far_at[0], o_x, i_x)),
+                    hn::Min(at(ray.far_at[1], o_y, i_y), at(ray.far_at[2], o_z, i_z)));
         const auto meets = hn::Le(entry, hn::Mul(exit, hn::Set(d, kFarSlack)));
         mask |= maskBits(d, meets) << i;
         if constexpr (kWithNear) {
@@ -45,6 +41,21 @@ HWY_INLINE uint32_t boxMask(const BvhNode& node, const TraceRay& ray, float end,
         }
     }
     return mask;
+}
+
+/// Without a loop over the mask, whose end no processor foresees.
+HWY_INLINE int pushChildren(const BvhNode& node, uint32_t mask, uint32_t* stack, int size) {
+    const hn::CappedTag<int32_t, kTreeWidth> d;
+    const hn::Rebind<uint8_t, decltype(d)> d8;
+    for (size_t i = 0; i < size_t(kTreeWidth); i += hn::Lanes(d)) {
+        const uint32_t bits = mask >> i & ((1u << hn::Lanes(d)) - 1);
+        const auto order = hn::PromoteTo(d, hn::LoadU(d8, kPackedLanes[bits].data()));
+        const auto children = hn::Load(d, reinterpret_cast<const int32_t*>(node.child) + i);
+        const auto packed = hn::TableLookupLanes(children, hn::IndicesFromVec(d, order));
+        hn::StoreU(packed, d, reinterpret_cast<int32_t*>(stack) + size);
+        size += std::popcount(bits);
+    }
+    return size;
 }
 
 HWY_INLINE uint32_t blockMask(const TriangleBlock& block, const TraceRay& ray, float end,

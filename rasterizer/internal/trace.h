@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rasterizer/internal/bvh_node.h"
 #include "rasterizer/simd.h"
@@ -60,16 +61,20 @@ constexpr float kLeastDirection = 1e-18f;
 struct TraceRay {
     float origin[3];
     float inverse[3];
-    int near_bound[3];  ///< 0: a box's low side comes first, 1: its high side
-    int kx, ky, kz;     ///< axes; kz is the direction's largest
-    float sx, sy, sz;   ///< shear
+    /// Where in BvhNode::bounds the near and the far sides of the boxes begin.
+    int near_at[3], far_at[3];
+    int kx, ky, kz;    ///< axes; kz is the direction's largest
+    float sx, sy, sz;  ///< shear
 
+    TraceRay() = default;
     TraceRay(const float o[3], const float d[3]) {
         for (int k = 0; k < 3; ++k) {
             origin[k] = o[k];
             const bool tiny = std::fabs(d[k]) < kLeastDirection;
             inverse[k] = 1.0f / (tiny ? std::copysign(kLeastDirection, d[k]) : d[k]);
-            near_bound[k] = inverse[k] < 0.0f ? 1 : 0;
+            const int high = inverse[k] < 0.0f ? 1 : 0;
+            near_at[k] = (high * 3 + k) * kTreeWidth;
+            far_at[k] = ((1 - high) * 3 + k) * kTreeWidth;
         }
         const float ax = std::fabs(d[0]), ay = std::fabs(d[1]), az = std::fabs(d[2]);
         kz = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);

@@ -11,13 +11,13 @@ namespace {
 /// Bit i: the ray meets the box of child i before `end`; where it enters it.
 template <bool kWithNear>
 uint32_t boxMask(const BvhNode& node, const TraceRay& ray, float end, float* near_t) {
+    const float* bounds = node.bounds[0][0];
     uint32_t mask = 0;
     for (int i = 0; i < kTreeWidth; ++i) {
         float entry = 0.0f, exit = end;
         for (int k = 0; k < 3; ++k) {
-            const int side = ray.near_bound[k];
-            entry = std::max(entry, (node.bounds[side][k][i] - ray.origin[k]) * ray.inverse[k]);
-            exit = std::min(exit, (node.bounds[1 - side][k][i] - ray.origin[k]) * ray.inverse[k]);
+            entry = std::max(entry, (bounds[ray.near_at[k] + i] - ray.origin[k]) * ray.inverse[k]);
+            exit = std::min(exit, (bounds[ray.far_at[k] + i] - ray.origin[k]) * ray.inverse[k]);
         }
         mask |= entry <= exit * kFarSlack ? 1u << i : 0u;
         if constexpr (kWithNear) {
@@ -25,6 +25,14 @@ uint32_t boxMask(const BvhNode& node, const TraceRay& ray, float end, float* nea
         }
     }
     return mask;
+}
+
+/// Puts the children `mask` onto the stack; returns its new size.
+int pushChildren(const BvhNode& node, uint32_t mask, uint32_t* stack, int size) {
+    for (; mask != 0; mask &= mask - 1) {
+        stack[size++] = node.child[std::countr_zero(mask)];
+    }
+    return size;
 }
 
 /// Bit i: the ray hits triangle i at 0 < t ≤ end. `hits` is only written where there is one.

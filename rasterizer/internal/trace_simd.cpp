@@ -13,6 +13,7 @@
 #include <bit>
 
 #include "rasterizer/internal/dispatch.h"
+#include "rasterizer/internal/packed_lanes.h"
 
 // Highway's one-lane target is never asked for: the reference kernels stand in.
 #if HWY_TARGET == HWY_SCALAR

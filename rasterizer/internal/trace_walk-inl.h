@@ -1,5 +1,6 @@
-// How rays walk through the trees, for any pair of boxMask() and blockMask(). Included in the
-// middle of a namespace, once for each instruction set and once for the scalar truth.
+// How rays walk through the trees, for any boxMask(),
+// pushChildren() and blockMask(). Included in the middle of a namespace, once for each instruction
+// set and once for the scalar truth.
 
 /// Whether the block's triangles `mask` have a hole at each place they are hit: those that have
 /// none stay.
@@ -18,57 +19,74 @@ inline uint32_t withoutHoles(const SceneTree& scene, uint32_t instance, const Tr
     return mask;
 }
 
-inline bool meshOccludes(const SceneTree& scene, uint32_t instance, const TraceRay& ray,
-                         const Ray& world) {
-    const MeshTree& tree = *scene.instances[instance].tree;
+/// A ray on its way to whatever is in it, one node or leaf a step.
+struct OcclusionWalk {
+    TraceRay shape;
+    const Ray* world = nullptr;
+    const BvhNode* nodes = nullptr;  ///< of the mesh it is in, or of the scene
+    const TriangleBlock* blocks = nullptr;
+    uint32_t instance = kNothingHit;  ///< it is in; kNothingHit: none
+    int size = 0;                     ///< of the stack
+    int floor = 0;                    ///< what lies below belongs to the scene's tree
     uint32_t stack[kTraceStack];
-    int size = 1;
-    stack[0] = 0;
-    BlockHits hits;
-    while (size > 0) {
-        const uint32_t at = stack[--size];
-        if ((at & kLeafBit) == 0) {
-            const BvhNode& node = tree.nodes[at];
-            for (uint32_t mask = boxMask<false>(node, ray, world.end, nullptr); mask != 0;
-                 mask &= mask - 1) {
-                stack[size++] = node.child[std::countr_zero(mask)];
-            }
-            continue;
-        }
-        const TriangleBlock& block = tree.blocks[at & ~kLeafBit];
-        const uint32_t mask = blockMask(block, ray, world.end, hits);
-        if (mask != 0 && withoutHoles(scene, instance, block, hits, mask, world.random) != 0) {
-            return true;
-        }
-    }
-    return false;
-}
 
-inline bool sceneOccludes(const SceneTree& scene, const Ray& world) {
-    if (scene.nodes.empty()) {
-        return false;
+    void start(const SceneTree& scene, const Ray& ray) {
+        shape = TraceRay(ray.origin, ray.direction);
+        world = &ray;
+        nodes = scene.nodes.data();
+        instance = kNothingHit;
+        floor = 0;
+        stack[0] = 0;
+        size = scene.nodes.empty() ? 0 : 1;
     }
-    const TraceRay ray(world.origin, world.direction);
-    uint32_t stack[kTraceStack];
-    int size = 1;
-    stack[0] = 0;
-    while (size > 0) {
-        const uint32_t at = stack[--size];
-        if ((at & kLeafBit) == 0) {
-            const BvhNode& node = scene.nodes[at];
-            for (uint32_t mask = boxMask<false>(node, ray, world.end, nullptr); mask != 0;
-                 mask &= mask - 1) {
-                stack[size++] = node.child[std::countr_zero(mask)];
-            }
-            continue;
+    void enter(const SceneTree& scene, uint32_t which) {
+        const InstanceTree& i = scene.instances[which];
+        if (!i.identity) {
+            shape = toObject(i, *world);
         }
-        const uint32_t i = at & ~kLeafBit;
-        const InstanceTree& instance = scene.instances[i];
-        if (meshOccludes(scene, i, instance.identity ? ray : toObject(instance, world), world)) {
-            return true;
-        }
+        instance = which;
+        nodes = i.tree->nodes.data();
+        blocks = i.tree->blocks.data();
+        floor = size;
+        stack[size++] = 0;
     }
-    return false;
+    void leave(const SceneTree& scene) {
+        if (!scene.instances[instance].identity) {
+            shape = TraceRay(world->origin, world->direction);
+        }
+        instance = kNothingHit;
+        nodes = scene.nodes.data();
+        floor = 0;
+    }
+};
+
+enum class Step { goes_on, blocked, free };
+
+inline Step stepOf(const SceneTree& scene, OcclusionWalk& walk) {
+    if (walk.size == walk.floor) {
+        if (walk.instance == kNothingHit) {
+            return Step::free;
+        }
+        walk.leave(scene);
+        return Step::goes_on;
+    }
+    const uint32_t at = walk.stack[--walk.size];
+    if ((at & kLeafBit) == 0) {
+        const BvhNode& node = walk.nodes[at];
+        const uint32_t mask = boxMask<false>(node, walk.shape, walk.world->end, nullptr);
+        walk.size = pushChildren(node, mask, walk.stack, walk.size);
+        return Step::goes_on;
+    }
+    if (walk.instance == kNothingHit) {
+        walk.enter(scene, at & ~kLeafBit);
+        return Step::goes_on;
+    }
+    const TriangleBlock& block = walk.blocks[at & ~kLeafBit];
+    BlockHits hits;
+    const uint32_t mask = blockMask(block, walk.shape, walk.world->end, hits);
+    const bool blocked =
+        mask != 0 && withoutHoles(scene, walk.instance, block, hits, mask, walk.world->random) != 0;
+    return blocked ? Step::blocked : Step::goes_on;
 }
 
 /// Children that wait for their turn, the nearest on top.
@@ -166,9 +184,30 @@ inline RayHit closestInScene(const SceneTree& scene, const Ray& world) {
     return best;
 }
 
+/// Rays take turns: while one waits for a node's memory and arithmetic, the others go on.
 inline void occludedRays(const SceneTree& scene, const Ray* rays, int count, uint8_t* blocked) {
-    for (int i = 0; i < count; ++i) {
-        blocked[i] = sceneOccludes(scene, rays[i]) ? 1 : 0;
+    constexpr int kTogether = 8;
+    OcclusionWalk walks[kTogether];
+    OcclusionWalk* active[kTogether];
+    int going = std::min(count, kTogether), next = going;
+    for (int i = 0; i < going; ++i) {
+        walks[i].start(scene, rays[i]);
+        active[i] = &walks[i];
+    }
+    while (going > 0) {
+        for (int i = 0; i < going; ++i) {
+            OcclusionWalk& walk = *active[i];
+            const Step step = stepOf(scene, walk);
+            if (step == Step::goes_on) {
+                continue;
+            }
+            blocked[walk.world - rays] = step == Step::blocked ? 1 : 0;
+            if (next < count) {
+                walk.start(scene, rays[next++]);
+            } else {
+                std::swap(active[i], active[--going]);
+            }
+        }
     }
 }
 

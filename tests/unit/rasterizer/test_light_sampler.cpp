@@ -448,8 +448,7 @@ TEST_CASE("light random: the first samples of a pixel, and a frame's neighbours,
         return true;
     };
     const auto at = [&](int x, int y, uint32_t sample, RandomUse use) {
-        const RandomPair a = pixels.at(x, y, use), b = numbersOfSample(sample).pairs[use];
-        return RandomPair{a.x ^ b.x, a.y ^ b.y};
+        return pixels.tileOf(x, y, numbersOfSample(sample)).at(x, y, use);
     };
     for (RandomUse use : {kRandomSun, kRandomLight, kRandomHemisphere}) {
         for (uint32_t count : {4u, 8u, 16u, 32u, 256u}) {
