@@ -37,7 +37,7 @@ HWY_INLINE uint32_t boxMask(const BvhNode& node, const TraceRay& ray, float end,
         const auto meets = hn::Le(entry, hn::Mul(exit, hn::Set(d, kFarSlack)));
         mask |= maskBits(d, meets) << i;
         if constexpr (kWithNear) {
-            hn::Store(entry, d, near_t + i);
+            hn::Store(hn::IfThenElse(meets, entry, hn::Set(d, 3e38f)), d, near_t + i);
         }
     }
     return mask;
@@ -55,6 +55,41 @@ HWY_INLINE int pushChildren(const BvhNode& node, uint32_t mask, uint32_t* stack,
         hn::StoreU(packed, d, reinterpret_cast<int32_t*>(stack) + size);
         size += std::popcount(bits);
     }
+    return size;
+}
+
+HWY_INLINE int pushNearestLast(const BvhNode& node, uint32_t mask, const float* near_t,
+                               uint32_t* stack, float* stack_t, int size) {
+    if (mask == 0) {
+        return size;
+    }
+    const Eight d;
+    const hn::CappedTag<int32_t, kTreeWidth> di;
+    const hn::Rebind<uint8_t, decltype(di)> d8;
+    auto least = hn::Load(d, near_t);
+    for (size_t i = hn::Lanes(d); i < size_t(kTreeWidth); i += hn::Lanes(d)) {
+        least = hn::Min(least, hn::Load(d, near_t + i));
+    }
+    least = hn::MinOfLanes(d, least);
+    uint32_t equal = 0;
+    for (size_t i = 0; i < size_t(kTreeWidth); i += hn::Lanes(d)) {
+        equal |= maskBits(d, hn::Eq(least, hn::Load(d, near_t + i))) << i;
+    }
+    const int nearest = std::countr_zero(equal & mask);
+    const uint32_t others = mask & ~(1u << nearest);
+    for (size_t i = 0; i < size_t(kTreeWidth); i += hn::Lanes(d)) {
+        const uint32_t bits = others >> i & ((1u << hn::Lanes(d)) - 1);
+        const auto order =
+            hn::IndicesFromVec(di, hn::PromoteTo(di, hn::LoadU(d8, kPackedLanes[bits].data())));
+        const auto children = hn::Load(di, reinterpret_cast<const int32_t*>(node.child) + i);
+        hn::StoreU(hn::TableLookupLanes(children, order), di,
+                   reinterpret_cast<int32_t*>(stack) + size);
+        const auto t = hn::BitCast(di, hn::Load(d, near_t + i));
+        hn::StoreU(hn::BitCast(d, hn::TableLookupLanes(t, order)), d, stack_t + size);
+        size += std::popcount(bits);
+    }
+    stack_t[size] = near_t[nearest];
+    stack[size++] = node.child[nearest];
     return size;
 }
 

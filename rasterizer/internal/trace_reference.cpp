@@ -35,6 +35,27 @@ int pushChildren(const BvhNode& node, uint32_t mask, uint32_t* stack, int size) 
     return size;
 }
 
+/// The same, with where the ray enters them; the nearest, or the first of several, comes last.
+int pushNearestLast(const BvhNode& node, uint32_t mask, const float* near_t, uint32_t* stack,
+                    float* stack_t, int size) {
+    int nearest = -1;
+    for (int i = 0; i < kTreeWidth; ++i) {
+        const bool hit = (mask >> i & 1u) != 0;
+        nearest = hit && (nearest < 0 || near_t[i] < near_t[nearest]) ? i : nearest;
+    }
+    for (int i = 0; i < kTreeWidth; ++i) {
+        if ((mask >> i & 1u) != 0 && i != nearest) {
+            stack_t[size] = near_t[i];
+            stack[size++] = node.child[i];
+        }
+    }
+    if (nearest >= 0) {
+        stack_t[size] = near_t[nearest];
+        stack[size++] = node.child[nearest];
+    }
+    return size;
+}
+
 /// Bit i: the ray hits triangle i at 0 < t ≤ end. `hits` is only written where there is one.
 uint32_t blockMask(const TriangleBlock& block, const TraceRay& ray, float end, BlockHits& hits) {
     uint32_t mask = 0;

@@ -1,6 +1,6 @@
 // How rays walk through the trees, for any boxMask(),
-// pushChildren() and blockMask(). Included in the middle of a namespace, once for each instruction
-// set and once for the scalar truth.
+// pushChildren(), pushNearestLast() and blockMask(). Included in the middle of a namespace, once
+// for each instruction set and once for the scalar truth.
 
 /// Whether the block's triangles `mask` have a hole at each place they are hit: those that have
 /// none stay.
@@ -89,99 +89,102 @@ inline Step stepOf(const SceneTree& scene, OcclusionWalk& walk) {
     return blocked ? Step::blocked : Step::goes_on;
 }
 
-/// Children that wait for their turn, the nearest on top.
-struct NearestFirst {
-    uint32_t child[kTraceStack];
+/// The same for the closest hit. Children wait with where the ray enters them; the nearest of a
+/// node's comes first, the others as they lie.
+struct ClosestWalk {
+    TraceRay shape;
+    const Ray* world = nullptr;
+    const BvhNode* nodes = nullptr;
+    const TriangleBlock* blocks = nullptr;
+    uint32_t instance = kNothingHit;
+    int size = 0, floor = 0;
+    float end = 0.0f;  ///< of what is still looked at
+    RayHit best;
+    uint32_t stack[kTraceStack];
     float near_t[kTraceStack];
-    int size = 0;
 
-    void push(const BvhNode& node, uint32_t mask, const float* t) {
-        const int first = size;
-        for (; mask != 0; mask &= mask - 1) {
-            const int i = std::countr_zero(mask);
-            int at = size++;
-            for (; at > first && near_t[at - 1] < t[i]; --at) {
-                near_t[at] = near_t[at - 1];
-                child[at] = child[at - 1];
-            }
-            near_t[at] = t[i];
-            child[at] = node.child[i];
-        }
+    void start(const SceneTree& scene, const Ray& ray) {
+        shape = TraceRay(ray.origin, ray.direction);
+        world = &ray;
+        nodes = scene.nodes.data();
+        instance = kNothingHit;
+        floor = 0;
+        end = ray.end;
+        best = {};
+        stack[0] = 0;
+        near_t[0] = 0.0f;
+        size = scene.nodes.empty() ? 0 : 1;
     }
-    /// False when nothing is left that may be as near as `end`.
-    bool pop(float end, uint32_t& at) {
-        while (size > 0) {
-            --size;
-            if (near_t[size] <= end) {
-                at = child[size];
-                return true;
-            }
+    void enter(const SceneTree& scene, uint32_t which) {
+        const InstanceTree& i = scene.instances[which];
+        if (!i.identity) {
+            shape = toObject(i, *world);
         }
-        return false;
+        instance = which;
+        nodes = i.tree->nodes.data();
+        blocks = i.tree->blocks.data();
+        floor = size;
+        near_t[size] = 0.0f;
+        stack[size++] = 0;
     }
-};
-
-inline void closestInMesh(const SceneTree& scene, uint32_t instance, const TraceRay& ray,
-                          const Ray& world, float& end, RayHit& best) {
-    const MeshTree& tree = *scene.instances[instance].tree;
-    NearestFirst stack;
-    stack.child[0] = 0;
-    stack.near_t[0] = 0.0f;
-    stack.size = 1;
-    BlockHits hits;
-    alignas(32) float near_t[kTreeWidth];
-    uint32_t at = 0;
-    while (stack.pop(end * kEndSlack, at)) {
-        if ((at & kLeafBit) == 0) {
-            const uint32_t mask = boxMask<true>(tree.nodes[at], ray, end * kEndSlack, near_t);
-            stack.push(tree.nodes[at], mask, near_t);
-            continue;
+    void leave(const SceneTree& scene) {
+        if (!scene.instances[instance].identity) {
+            shape = TraceRay(world->origin, world->direction);
         }
-        const TriangleBlock& block = tree.blocks[at & ~kLeafBit];
-        uint32_t mask = blockMask(block, ray, end * kEndSlack, hits);
-        if (mask != 0) {
-            mask = withoutHoles(scene, instance, block, hits, mask, world.random);
-        }
+        instance = kNothingHit;
+        nodes = scene.nodes.data();
+        floor = 0;
+    }
+    void take(const TriangleBlock& block, const BlockHits& hits, uint32_t mask) {
         for (; mask != 0; mask &= mask - 1) {
             const int i = std::countr_zero(mask);
             const uint32_t triangle = block.triangle[i] & ~kHolesBit;
-            const bool tie = hits.t[i] == best.t && best.instance != kNothingHit &&
-                             (instance < best.instance ||
-                              (instance == best.instance && triangle < best.triangle));
-            const bool first = best.instance == kNothingHit && hits.t[i] <= end;
-            if (hits.t[i] < end || first || tie) {
-                end = hits.t[i];
-                best = {hits.t[i], hits.b1[i], hits.b2[i], instance, triangle};
+            const float t = hits.t[i];
+            const bool none = best.instance == kNothingHit;
+            const bool before =
+                instance < best.instance || (instance == best.instance && triangle < best.triangle);
+            if (none ? t <= end : t < end || (t == end && before)) {
+                end = t;
+                best = {t, hits.b1[i], hits.b2[i], instance, triangle};
             }
         }
     }
-}
+};
 
-inline RayHit closestInScene(const SceneTree& scene, const Ray& world) {
-    RayHit best;
-    if (scene.nodes.empty()) {
-        return best;
-    }
-    const TraceRay ray(world.origin, world.direction);
-    float end = world.end;
-    NearestFirst stack;
-    stack.child[0] = 0;
-    stack.near_t[0] = 0.0f;
-    stack.size = 1;
-    alignas(32) float near_t[kTreeWidth];
-    uint32_t at = 0;
-    while (stack.pop(end * kEndSlack, at)) {
-        if ((at & kLeafBit) == 0) {
-            const uint32_t mask = boxMask<true>(scene.nodes[at], ray, end * kEndSlack, near_t);
-            stack.push(scene.nodes[at], mask, near_t);
-            continue;
+/// False when the ray has come to its end.
+inline bool stepOf(const SceneTree& scene, ClosestWalk& walk) {
+    if (walk.size == walk.floor) {
+        if (walk.instance == kNothingHit) {
+            return false;
         }
-        const uint32_t i = at & ~kLeafBit;
-        const InstanceTree& instance = scene.instances[i];
-        closestInMesh(scene, i, instance.identity ? ray : toObject(instance, world), world, end,
-                      best);
+        walk.leave(scene);
+        return true;
     }
-    return best;
+    const float end = walk.end * kEndSlack;
+    --walk.size;
+    if (walk.near_t[walk.size] > end) {
+        return true;
+    }
+    const uint32_t at = walk.stack[walk.size];
+    if ((at & kLeafBit) == 0) {
+        const BvhNode& node = walk.nodes[at];
+        alignas(32) float near_t[kTreeWidth];
+        const uint32_t mask = boxMask<true>(node, walk.shape, end, near_t);
+        walk.size = pushNearestLast(node, mask, near_t, walk.stack, walk.near_t, walk.size);
+        return true;
+    }
+    if (walk.instance == kNothingHit) {
+        walk.enter(scene, at & ~kLeafBit);
+        return true;
+    }
+    const TriangleBlock& block = walk.blocks[at & ~kLeafBit];
+    BlockHits hits;
+    const uint32_t mask = blockMask(block, walk.shape, end, hits);
+    if (mask != 0) {
+        walk.take(block, hits,
+                  withoutHoles(scene, walk.instance, block, hits, mask, walk.world->random));
+    }
+    return true;
 }
 
 /// Rays take turns: while one waits for a node's memory and arithmetic, the others go on.
@@ -212,7 +215,26 @@ inline void occludedRays(const SceneTree& scene, const Ray* rays, int count, uin
 }
 
 inline void closestOfRays(const SceneTree& scene, const Ray* rays, int count, RayHit* hits) {
-    for (int i = 0; i < count; ++i) {
-        hits[i] = closestInScene(scene, rays[i]);
+    constexpr int kTogether = 8;
+    ClosestWalk walks[kTogether];
+    ClosestWalk* active[kTogether];
+    int going = std::min(count, kTogether), next = going;
+    for (int i = 0; i < going; ++i) {
+        walks[i].start(scene, rays[i]);
+        active[i] = &walks[i];
+    }
+    while (going > 0) {
+        for (int i = 0; i < going; ++i) {
+            ClosestWalk& walk = *active[i];
+            if (stepOf(scene, walk)) {
+                continue;
+            }
+            hits[walk.world - rays] = walk.best;
+            if (next < count) {
+                walk.start(scene, rays[next++]);
+            } else {
+                std::swap(active[i], active[--going]);
+            }
+        }
     }
 }
