@@ -255,10 +255,14 @@ const std::vector<AtlasCase>& atlasCases() {
 }
 
 const AtlasCase* findAtlasCase(const std::string& name) {
-    const std::vector<AtlasCase>& cases = atlasCases();
-    const auto found = std::find_if(cases.begin(), cases.end(),
-                                    [&](const AtlasCase& each) { return each.name == name; });
-    return found == cases.end() ? nullptr : &*found;
+    for (const std::vector<AtlasCase>* suite : {&atlasCases(), &noiseCases()}) {
+        const auto found = std::find_if(suite->begin(), suite->end(),
+                                        [&](const AtlasCase& each) { return each.name == name; });
+        if (found != suite->end()) {
+            return &*found;
+        }
+    }
+    return nullptr;
 }
 
 }  // namespace still

@@ -1,7 +1,8 @@
 #pragma once
 // The failure atlas: one small scene for each way in which temporal methods fail, with the frames
-// that show it and the measure that exposes it.
+// that show it and the measure that exposes it. And a suite of noisy scenes in the same form.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +23,7 @@ struct AtlasCase {
     std::string name;     ///< "disocclusion"
     std::string failure;  ///< one sentence: what goes wrong, and why
     std::string measure;  ///< the metric that exposes it: a column of the atlas
-    Scene (*make)() = nullptr;
+    std::function<Scene()> make{};
     std::vector<AtlasSegment> segments;  ///< in order of frames
     std::optional<int> event_frame{};    ///< recovery is counted from here
     std::optional<int> resize_frame{};   ///< earlier frames are rendered at half the size
@@ -34,7 +35,14 @@ struct AtlasCase {
 /// All cases, in the order of the issue they answer. Scenes are made when asked for.
 const std::vector<AtlasCase>& atlasCases();
 
-/// Null when there is no such case.
+/// The suite of noise: scenes with light that is sampled. Their references are of the same
+/// estimator, with many samples.
+const std::vector<AtlasCase>& noiseCases();
+
+/// A case of that suite: a scene that stands still, looked at when it has had 32 frames.
+AtlasCase settledNoise(std::string name, std::string failure, std::function<Scene()> make);
+
+/// Of either suite; null when there is no such case.
 const AtlasCase* findAtlasCase(const std::string& name);
 
 }  // namespace still

@@ -10,9 +10,13 @@
 namespace still::command {
 
 struct AtlasOptions {
-    std::string scenes;   ///< comma-separated names of cases; empty: all that are not slow
-    std::string presets;  ///< comma-separated columns; empty: raw, fxaa and all presets
-    std::string versus;   ///< one of the columns, which the others are held against; empty: none
+    std::string suite = "failures";   ///< or "noise"
+    std::string scenes;               ///< comma-separated names of cases; empty: the suite's
+    std::vector<std::string> models;  ///< scenes that become cases of the suite of noise
+    std::string lights;               ///< scene file that lights them; empty: their own
+    std::string presets;              ///< comma-separated columns; empty: the suite's
+    std::string versus;  ///< one of the columns, which the others are held against; empty: the
+                         ///< suite's, which has one in the suite of noise
     Size resolution{320, 180};
     int samples = 0;     ///< at most so many of a reference; 0: as each case wants
     std::string cache;   ///< folder; empty: the user's

@@ -3,12 +3,14 @@
 
 #include "demos/stillframe/atlas_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "demos/stillframe/atlas_summary.h"
+#include "demos/stillframe/noise_table.h"
 #include "demos/stillframe/page_parts.h"
 
 namespace still::command {
@@ -50,6 +52,7 @@ Json resultJson(const AtlasResult& result, bool timed) {
     for (const FrameError& frame : result.measures.frames) {
         json["frames"].push_back({{"frame", frame.frame},
                                   {"rms", shortened(frame.rms)},
+                                  {"ssim", shortened(frame.ssim)},
                                   {"flip", shortened(frame.flip)}});
     }
     return json;
@@ -66,15 +69,42 @@ Json rowJson(const SummaryRow& row) {
             {"worst_db", shortened(row.worst_db)}};
 }
 
-/// What stands after the results when there is a base.
-std::string summaryJson(const AtlasReport& report) {
-    std::string text = ",\n\"versus\": " + Json(report.versus).dump() + ", \"summary\": [";
+Json rowJson(const NoiseRow& row) {
+    Json json{{"scene", row.scene},
+              {"segment", row.segment},
+              {"preset", row.preset},
+              {"ssim", shortened(row.ssim)},
+              {"rmse", shortened(row.rmse)},
+              {"flicker", orNull(row.flicker)},
+              {"residual", orNull(row.residual)},
+              {"trail", orNull(row.trail)},
+              {"time", orNull(row.time)},
+              {"equal_time", nullptr}};
+    if (row.equal_time) {
+        json["equal_time"] = {{"samples", row.equal_time->samples},
+                              {"ssim", shortened(row.equal_time->ssim)},
+                              {"rmse", shortened(row.equal_time->rms / 255)},
+                              {"own_rmse", shortened(row.equal_time_rms / 255)}};
+    }
+    return json;
+}
+
+template <class Row>
+std::string rowsJson(const char* name, const std::vector<Row>& rows) {
+    std::string text = std::string(",\n\"") + name + "\": [";
     const char* separator = "\n";
-    for (const SummaryRow& row : summaryOf(report)) {
+    for (const Row& row : rows) {
         text += separator + rowJson(row).dump();
         separator = ",\n";
     }
     return text + "\n]";
+}
+
+/// What stands after the results when there is a base.
+std::string summaryJson(const AtlasReport& report) {
+    return ",\n\"versus\": " + Json(report.versus).dump() +
+           (report.noise ? rowsJson("noise", noiseTableOf(report))
+                         : rowsJson("summary", summaryOf(report)));
 }
 
 Json caseJson(const AtlasCase& atlas_case) {
@@ -117,6 +147,15 @@ std::string field(const std::optional<double>& value) {
 }
 
 }  // namespace
+
+const AtlasResult* findBase(const AtlasReport& report, const AtlasResult& cell) {
+    const auto found =
+        std::find_if(report.results.begin(), report.results.end(), [&](const AtlasResult& each) {
+            return each.scene == cell.scene && each.segment == cell.segment &&
+                   each.preset == report.versus;
+        });
+    return found == report.results.end() ? nullptr : &*found;
+}
 
 std::string atlasJson(const AtlasReport& report) {
     std::string text = "{\"width\": " + std::to_string(report.width) +

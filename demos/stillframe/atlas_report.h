@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "demos/stillframe/cell.h"
+#include "demos/stillframe/equal_time.h"
 
 namespace still::command {
 
@@ -15,6 +16,7 @@ struct AtlasResult {
     /// Of the base's processor time for the same frames, see race.h; nothing when it was not
     /// measured.
     std::optional<double> time_share{};
+    std::optional<EqualTime> equal_time{};  ///< in the suite of noise
 };
 
 struct AtlasReport {
@@ -22,8 +24,12 @@ struct AtlasReport {
     std::vector<const AtlasCase*> cases;
     std::vector<std::string> modes;
     std::vector<AtlasResult> results;  ///< by case, segment, mode
+    bool noise = false;                ///< the suite of noise, which has its own table
     std::string versus;                ///< the mode that is the base of a summary; empty: none
 };
+
+/// The base's result for the same frames; null without a base.
+const AtlasResult* findBase(const AtlasReport& report, const AtlasResult& cell);
 
 /// {"width", "height", "results": [{"scene", "segment", "preset", "psnr", "ssim", "flip",
 /// "flicker", "ghost_area", "recovery_frames", "sharpness", "residual", "trail", "ms", "frames":

@@ -56,15 +56,6 @@ class RowSums {
     std::string worst_scene_;
 };
 
-const AtlasResult* findBase(const AtlasReport& report, const AtlasResult& cell) {
-    const auto found =
-        std::find_if(report.results.begin(), report.results.end(), [&](const AtlasResult& each) {
-            return each.scene == cell.scene && each.segment == cell.segment &&
-                   each.preset == report.versus;
-        });
-    return found == report.results.end() ? nullptr : &*found;
-}
-
 RowSums sumsOf(const AtlasReport& report, const std::string& segment, const std::string& preset) {
     RowSums sums;
     for (const AtlasResult& cell : report.results) {

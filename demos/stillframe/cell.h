@@ -24,6 +24,7 @@ constexpr int kTrailRuns = 16;
 struct FrameError {
     int frame = 0;
     double rms = 0;   ///< of the 8-bit channels, 0 … 255
+    double ssim = 0;
     double flip = 0;  ///< mean over the picture, 0 … 1
 };
 

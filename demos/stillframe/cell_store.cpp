@@ -116,6 +116,7 @@ std::string cellBytes(const std::vector<SegmentMeasures>& segments) {
         for (const FrameError& frame : segment.frames) {
             writer.put(frame.frame);
             writer.put(frame.rms);
+            writer.put(frame.ssim);
             writer.put(frame.flip);
         }
         writer.putBytes(segment.crop_png);
@@ -135,6 +136,7 @@ std::optional<std::vector<SegmentMeasures>> cellFromBytes(const std::string& byt
             FrameError& frame = segment.frames.emplace_back();
             reader.get(frame.frame);
             reader.get(frame.rms);
+            reader.get(frame.ssim);
             reader.get(frame.flip);
         }
         reader.getBytes(segment.crop_png);

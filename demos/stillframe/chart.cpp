@@ -26,19 +26,6 @@ struct ChartScene {
     Scene moving, still;
 };
 
-/// "builtin:courtyard" and "models/courtyard.obj" are both called courtyard.
-std::string plainName(const std::string& scene) {
-    const size_t colon = scene.starts_with("builtin:") ? scene.find(':') + 1 : 0;
-    const std::string stem = std::filesystem::path(scene.substr(colon)).stem().string();
-    std::string name;
-    for (char c : stem) {
-        const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
-                           (c >= 'a' && c <= 'z') || c == '-' || c == '_' || c == '.';
-        name += plain ? c : '_';
-    }
-    return name;
-}
-
 Outcome<void> openScenes(const ChartOptions& options, std::list<ChartScene>& scenes) {
     const std::filesystem::path cache =
         options.cache.empty() ? usersCacheFolder() : std::filesystem::path(options.cache);

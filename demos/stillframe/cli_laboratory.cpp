@@ -34,11 +34,27 @@ Subcommand declareAtlas(CLI::App& app) {
     CLI::App* atlas = app.add_subcommand(
         "atlas", "Measure ways of anti-aliasing on scenes on which such ways fail");
     addLaboratoryOptions(*atlas, *o);
+    atlas
+        ->add_option("--suite", o->suite,
+                     "failures (default): on which temporal methods fail;\n"
+                     "noise: with light that is sampled, against plain accumulation")
+        ->check(CLI::IsMember({"failures", "noise"}))
+        ->type_name("NAME");
     atlas->add_option("--scenes", o->scenes, "Cases with commas, default all that are quick")
         ->type_name("NAMES");
     atlas
+        ->add_option("--model", o->models,
+                     "FILE.obj, FILE.json or builtin:NAME as a further case of the suite of\n"
+                     "noise, standing still")
+        ->type_name("SCENE");
+    atlas
+        ->add_option("--lights", o->lights,
+                     "Scene file whose lights and background the models are given")
+        ->type_name("FILE");
+    atlas
         ->add_option("--presets", o->presets,
-                     "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa.\n"
+                     "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa, or\n"
+                     "raw and still with and without denoising of the suite of noise.\n"
                      "NAME:KEY=VALUE changes a setting, as --taa does, or denoise=off")
         ->type_name("NAMES");
     atlas

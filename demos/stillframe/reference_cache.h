@@ -28,10 +28,11 @@ class ReferenceMaker {
 
     /// Of the frames made from now on.
     void resize(int width, int height);
+    /// Which picture make() would hand out.
+    uint64_t keyOf(int frame);
     Outcome<Reference> make(int frame);
 
   private:
-    uint64_t keyOf(int frame);
 
     const FileCache& cache_;
     FrameSettings settings_;

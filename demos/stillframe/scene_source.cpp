@@ -78,4 +78,16 @@ void printWarnings(const std::vector<std::string>& warnings, bool quiet) {
     }
 }
 
+std::string plainName(const std::string& scene) {
+    const size_t colon = scene.starts_with("builtin:") ? scene.find(':') + 1 : 0;
+    const std::string stem = std::filesystem::path(scene.substr(colon)).stem().string();
+    std::string name;
+    for (char c : stem) {
+        const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                           (c >= 'a' && c <= 'z') || c == '-' || c == '_' || c == '.';
+        name += plain ? c : '_';
+    }
+    return name;
+}
+
 }  // namespace still::command

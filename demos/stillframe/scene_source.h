@@ -19,6 +19,10 @@ Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& c
 /// What {model} stands for: "courtyard" of builtin:courtyard, "a" of dir/a.obj, "stdin" of -.
 std::string modelName(const std::string& scene);
 
+/// "builtin:courtyard" and "models/courtyard.obj" are both called courtyard; letters, digits and
+/// "-_." only, for names of files and in tables.
+std::string plainName(const std::string& scene);
+
 /// Each on a line of standard error, unless quiet is asked for.
 void printWarnings(const std::vector<std::string>& warnings, bool quiet = false);
 

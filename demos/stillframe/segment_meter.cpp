@@ -84,9 +84,10 @@ void SegmentMeter::compare(const CaseFrame& frame, ImageView<const Rgb8> picture
     const PixelError error = pixelError(picture, reference);
     const double flip = meanFlip(reference, picture, {}, alone);
     error_ += error;
-    sums_.ssim += ssim(picture, reference);
+    const double similarity = ssim(picture, reference);
+    sums_.ssim += similarity;
     sums_.flip += flip;
-    sums_.frames.push_back({frame.frame, rmse(error), flip});
+    sums_.frames.push_back({frame.frame, rmse(error), similarity, flip});
     coarse_.push_back(coarseRms(picture, reference));
     if (const double ratio = sharpnessRatio(reference, picture); std::isfinite(ratio)) {
         sharpness_sum_ += ratio;

@@ -159,7 +159,8 @@ TEST_CASE("cell store: measures come back as they went, also those that do not a
     command::SegmentMeasures a, b;
     a.psnr = 1.0 / 3;
     a.flicker = 0.1;
-    a.frames = {{3, 0.7, 1e-9}, {4, 0, 0}};
+    a.frames = {{3, 0.7, 0.9, 1e-9}, {4, 0, 1, 0}};
+    a.trail = 3.5;
     a.crop_png = std::string("\0 1 - \n", 7);
     b.recovery_frames = 2;
     b.crop_x = -5;
@@ -173,6 +174,9 @@ TEST_CASE("cell store: measures come back as they went, also those that do not a
     CHECK_FALSE(first.ghost_area.has_value());
     CHECK(first.frames.size() == 2);
     CHECK(first.frames[0].flip == 1e-9);
+    CHECK(first.frames[0].ssim == 0.9);
+    CHECK(first.trail == 3.5);
+    CHECK_FALSE(first.residual.has_value());
     CHECK(first.crop_png == a.crop_png);
     CHECK(second.recovery_frames == b.recovery_frames);
     CHECK(second.crop_x == -5);

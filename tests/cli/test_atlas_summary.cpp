@@ -130,7 +130,7 @@ TEST_CASE("atlas: --versus prints a table of means, or has it in the JSON", "[cl
         CHECK(table.out.find("\n" + std::string(segment) + " ") != std::string::npos);
     }
     const Ran json = shell(folder.path(), run + "--json");
-    CHECK(json.out.find("\"versus\": \"still\", \"summary\": [") != std::string::npos);
+    CHECK(json.out.find("\"versus\": \"still\",\n\"summary\": [") != std::string::npos);
     CHECK(json.out.find("\"time_share\":1.0") != std::string::npos);
     CHECK(json.out.find("\"time_share\":null") != std::string::npos);  // a single frame
 
