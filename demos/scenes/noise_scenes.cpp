@@ -22,8 +22,8 @@ Scene stage(const char* name) {
     wall.rectangle({-8, 0, -3}, {16, 0, 0}, {0, 6, 0}, 2);
     addObject(scene, "wall", wall.take());
     scene.lights = {};
-    scene.lights.ambient = {0.06f, 0.07f, 0.09f};
-    setCamera(scene, {.eye = {0, 2.1, 7.5}, .target = {0, 1.1, 0}, .fov_y_deg = 40}, 0.1, 60);
+    scene.lights.ambient = {0.10f, 0.12f, 0.15f};
+    setCamera(scene, {.eye = {0, 2.0, 6.2}, .target = {0, 0.95, 0}, .fov_y_deg = 36}, 0.1, 60);
     return scene;
 }
 
@@ -74,7 +74,7 @@ Scene makePenumbra() {
     board.box({-0.7, 1.2, -0.05}, {0.7, 2.2, 0.05}, 1);
     SceneObject& moving = addObject(scene, "board", board.take());
     moving.tracks.translation.keys = {{0, {-2.4, 0, -0.2}}, {48, {2.4, 0, -0.2}}};
-    addLamp(scene, "lamp", 0.5, {14, 12, 9}, {{{0, {0.5, 4.2, 3.6}}}});
+    addLamp(scene, "lamp", 0.5, {22, 19, 14}, {{{0, {0.5, 4.0, 3.2}}}});
     return scene;
 }
 
@@ -82,7 +82,7 @@ Scene makePenumbra() {
 Scene makeMovingLight() {
     Scene scene = stage("moving-light");
     addStillLife(scene);
-    addLamp(scene, "lamp", 0.15, {5, 4.4, 3.4},
+    addLamp(scene, "lamp", 0.15, {6, 5.3f, 4.1f},
             {{{0, {-2.6, 2.1, 1.4}}, {48, {2.6, 2.1, 1.4}}, {96, {-2.6, 2.1, 1.4}}}});
     return scene;
 }
@@ -106,8 +106,8 @@ Scene makeContact() {
 Scene makeSwitchOff() {
     Scene scene = stage("switch-off");
     addStillLife(scene);
-    addLamp(scene, "far lamp", 0.3, {3.0f, 3.6f, 5.0f}, {{{0, {3.4, 3.6, 1.0}}}});
-    SceneObject& ball = addLamp(scene, "near lamp", 0.25, {7, 5.4f, 3.2f}, {{{0, {-1.6, 3, 2.2}}}});
+    addLamp(scene, "far lamp", 0.3, {7.0f, 8.0f, 10.0f}, {{{0, {3.6, 3.2, 1.6}}}});
+    SceneObject& ball = addLamp(scene, "near lamp", 0.25, {9, 7, 4}, {{{0, {-1.8, 3, 2.2}}}});
     scene.lights.spheres.back().intensity = {{{31, 1}, {32, 0}}};
     const uint32_t lit = scene.meshes[ball.mesh].parts[0].material;
     const uint32_t dark = addMaterial(scene, {.diffuse = {0.2f, 0.2f, 0.2f}});
