@@ -468,7 +468,10 @@ void TemporalUpscaler::resolve(const GBuffer& gbuffer, const TaaFrame& frame,
     if (s.planTiles(gbuffer.tiles, shading_changed, frame.repeats)) {
         s.advanceRing(frame, shading_changed);
     }
-    const Job job = s.makeJob(gbuffer, settings);
+    Job job = s.makeJob(gbuffer, settings);
+    // Sums need it whether the frame is kept or not.
+    job.frame.record.jitter_x_fx8 = frame.jitter_x_fx8;
+    job.frame.record.jitter_y_fx8 = frame.jitter_y_fx8;
     const taa::TileKernels kernels = taa::tileKernels(settings.simd);
     const auto forTiles = [&](auto&& visit) {
         workers.parallelFor(int(s.tiles.size()), 1, [&](int begin, int end, int) {
