@@ -20,6 +20,9 @@ ColourPlanes FrameLoop::State::resolved() const {
     if (enlarges()) {
         return {enlarged.red.view(), enlarged.green.view(), enlarged.blue.view()};
     }
+    if (reconstructs) {
+        return upscaler.colour();
+    }
     return gathers() ? taa.colour() : laboratory.colour();
 }
 
@@ -28,14 +31,14 @@ ImageView<const uint8_t> FrameLoop::State::fullConfidence() {
     if (!gathers()) {
         return laboratory.confidence();
     }
-    const ImageView<const uint8_t> counts = taa.sampleCount();
-    const int cap = sampleCap();
+    const ImageView<const uint8_t> counts = sampleCount();
+    const int full = fullCount();
     confidence.resize(counts.width, counts.height);
     const ImageView<uint8_t> scaled = confidence.view();
     workers.parallelFor(counts.height, kRowGrain, [&](int begin, int end, int) {
         for (int y = begin; y < end; ++y) {
             for (int x = 0; x < counts.width; ++x) {
-                scaled.row(y)[x] = uint8_t(counts.row(y)[x] * 255 / cap);
+                scaled.row(y)[x] = uint8_t(std::min<int>(counts.row(y)[x], full) * 255 / full);
             }
         }
     });
@@ -60,8 +63,9 @@ ColourPlanes FrameLoop::State::colour() const {
 void FrameLoop::State::encode() {
     const bool by_tile = temporal() && gathers() && !sharpens() && !enlarges();
     encodeOutput(colour(), table, output.view(), workers,
-                 by_tile ? taa.changedTiles() : std::span<const uint8_t>());
+                 by_tile ? changedTiles() : std::span<const uint8_t>());
     taa.forgetChanges();
+    upscaler.forgetChanges();
 }
 
 FrameResult FrameLoop::State::result() const {
@@ -76,10 +80,10 @@ FrameResult FrameLoop::State::result() const {
     }
     result.times = times;
     if (temporal() && gathers()) {
-        result.sample_count = taa.sampleCount();
+        result.sample_count = sampleCount();
         result.confidence = result.sample_count;
-        result.confidence_full = sampleCap();
-        result.converged = taa.converged();
+        result.confidence_full = fullCount();
+        result.converged = reconstructs ? upscaler.converged() : taa.converged();
     } else if (temporal()) {
         result.confidence = laboratory.confidence();
     }
@@ -104,6 +108,7 @@ FrameResult FrameLoop::render(int frame) {
         state.resize_frame = frame;
         state.resized = false;
     }
+    state.noteRatio(frame);
     if (state.hasPast()) {
         state.resolveHistory(frame);
     } else {
@@ -123,6 +128,12 @@ void FrameLoop::resize(int width, int height) {
     state_->settings.height = height;
     state_->resolved_frame = kNoFrame;
     state_->resized = true;
+}
+
+void FrameLoop::setRatio(int ratio_fx8) {
+    assert(state_->reconstructs);
+    assert(ratio_fx8 >= kNativeRatio_fx8 && ratio_fx8 <= kMaxRatio_fx8);
+    state_->next_ratio_fx8 = ratio_fx8;
 }
 
 const RasterCounters& FrameLoop::counters() const {
@@ -166,6 +177,9 @@ bool FrameLoop::rejections(const RejectionTargets& out) const {
 
 std::vector<TileWork> FrameLoop::tileWork() const {
     const State& s = *state_;
+    if (s.reconstructs) {
+        return s.upscaler.tileWork();
+    }
     if (s.temporal() && s.gathers() && !s.enlarges()) {
         return s.taa.tileWork();
     }

@@ -110,6 +110,12 @@ class FrameLoop {
     /// Frames before R are those of a loop that has had the new size from the start.
     void resize(int width, int height);
 
+    /// From the frame rendered next, R, on, frames are smaller than the picture by this ratio
+    /// (kNativeRatio_fx8 … kMaxRatio_fx8). That is no cut: the picture goes on. Frames before R
+    /// keep the ratios they had, also when they are rendered again. Only with a policy that
+    /// upscales in time, upscalesInTime().
+    void setRatio(int ratio_fx8);
+
     /// Of the sample that was rasterized last for the last frame; all zero when it needed none.
     const RasterCounters& counters() const;
 

@@ -273,7 +273,7 @@ constexpr uint64_t flipsOfCycle(uint32_t cycle) {
 }
 
 /// Of temporal upscaling; see upscaleSample().
-constexpr uint32_t kUpscaleSeedX = 1, kUpscaleSeedY = 2;
+constexpr uint32_t kUpscaleSeedX = 3429, kUpscaleSeedY = 3430;
 
 /// scrambled() with bits drawn for each node from `seed`.
 constexpr uint32_t scrambledAnew(uint32_t v, uint32_t seed, int bits) {

@@ -64,7 +64,7 @@ static bool nothingHappens(const FrameState& frame) {
 /// Whether the frame leaves a finished picture as it is. Then neither geometry nor pixels are
 /// touched.
 bool FrameLoop::State::rests(const FrameState& frame) {
-    return temporal() && gathers() && nothingHappens(frame) && taa.rest(taaSettings());
+    return temporal() && gathers() && nothingHappens(frame) && restsResolved();
 }
 
 /// Takes the sample that was just rasterized into the history.
@@ -78,7 +78,7 @@ void FrameLoop::State::resolve(const FrameState& frame, TaaFrame evidence) {
         } else {
             evidence.shading_changed |= frame.sampled_light_changed;
         }
-        taa.resolve(gbuffer, evidence, taaSettings(), workers);
+        gather(evidence);
         return;
     }
     laboratory.resolve(gbuffer,
@@ -90,6 +90,7 @@ void FrameLoop::State::resolve(const FrameState& frame, TaaFrame evidence) {
 
 /// Renders one frame into the history, which ends with the one before, or begins with it.
 void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
+    settings.policy.ratio_fx8 = ratioAt(frame);
     FrameState state = frameStateAt(scene, settings.camera, frame, settings.width, settings.height);
     // Sessions grow long: the way back to their last cut is not gone in every frame.
     const bool goes_on = resolved_frame == frame - 1 && !state.cut && frame != resize_frame;

@@ -13,6 +13,7 @@
 #include "postfx/sample_sums.h"
 #include "postfx/spatial.h"
 #include "postfx/spatial_upscale.h"
+#include "postfx/upscale.h"
 #include "rasterizer/light_sampler.h"
 
 namespace still {
@@ -46,7 +47,8 @@ struct FrameLoop::State {
         : scene(scene_in),
           settings(settings_in),
           workers(workers_in),
-          table(settings.tone_map, settings.exposure) {
+          table(settings.tone_map, settings.exposure),
+          reconstructs(temporal() && upscalesInTime(settings.policy)) {
         if (scene.lights.sampled()) {
             light = std::make_unique<LightStage>();
         }
@@ -63,8 +65,9 @@ struct FrameLoop::State {
     Workers& workers;
     std::vector<WindingBits> windings;  ///< of the meshes
     Rasterizer rasterizer;
-    Taa taa;                ///< Method::gather
-    Laboratory laboratory;  ///< Method::recursive
+    Taa taa;                    ///< Method::gather …
+    TemporalUpscaler upscaler;  ///< … of frames that are smaller than the picture
+    Laboratory laboratory;      ///< Method::recursive
     SpatialFilter spatial;
     SpatialUpscaler enlarger;           ///< policies that upscale
     std::unique_ptr<LightStage> light;  ///< of scenes with sampled light
@@ -72,6 +75,16 @@ struct FrameLoop::State {
     GBuffer fresh;          ///< FrameSettings::fresh_gbuffer, in frames that `gbuffer` has parts of
     bool in_parts = false;  ///< this is such a frame
     OutputTable table;
+    /// Frames are upscaled in time, at any ratio, 1 included. FrameSettings::policy.ratio_fx8 is
+    /// that of the frame that is rendered.
+    const bool reconstructs;
+    struct RatioChange {
+        int first_frame = 0;
+        int ratio_fx8 = kNativeRatio_fx8;
+    };
+    std::vector<RatioChange>
+        ratio_changes;       ///< FrameLoop::setRatio(), by frame; first the policy's
+    int next_ratio_fx8 = 0;  ///< of the frame rendered next; 0: as before
     Image<Rgb8> output;
     ColourSums sums;
     ColourImages filtered;      ///< mean of ssaa samples, or after spatial filter or sharpening
@@ -109,11 +122,11 @@ struct FrameLoop::State {
     /// Whether a frame depends on those before it.
     bool hasPast() const { return temporal() || denoises(); }
     bool hasStory() const {
-        return temporal() && !upscales(settings.policy) && !gbuffer.red.empty();
+        return temporal() && !reconstructs && !enlarges() && !gbuffer.red.empty();
     }
     bool gathers() const { return settings.policy.method == Method::gather; }
     bool sharpens() const { return temporal() && settings.policy.sharpness_q15 > 0; }
-    int sampleCap() const { return int(std::min(policyPeriod(settings.policy), 255u)); }
+    int sampleCap() const { return int(policyPeriod(settings.policy)); }
     /// Samples that are averaged; 1 when there is nothing to average.
     int ssaaSamples() const {
         return settings.anti_aliasing == AntiAliasing::ssaa ? settings.ssaa_samples : 1;
@@ -136,10 +149,21 @@ struct FrameLoop::State {
     ColourPlanes resolved() const;
     ImageView<const uint8_t> fullConfidence();
     void sharpenResolved();
+    // frame_upscale.cpp
     bool enlarges() const;
     int renderedWidth() const;
     int renderedHeight() const;
     void enlarge();
+    void noteRatio(int frame);
+    int ratioAt(int frame) const;
+    UpscaleSettings upscaleSettings() const;
+    // Of the gather, whichever of the two does it.
+    std::span<const uint8_t> plan(std::span<const TileFacts> facts, const TaaFrame& evidence);
+    bool restsResolved();
+    void gather(const TaaFrame& evidence);
+    std::span<const uint8_t> changedTiles() const;
+    ImageView<const uint8_t> sampleCount() const;
+    int fullCount() const;
     void averageSamples(const FrameState& frame);
     void filterSample();
     void renderAlone(int frame);

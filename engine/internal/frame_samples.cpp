@@ -52,7 +52,7 @@ void FrameLoop::State::rasterizeSample(const FrameState& frame, SampleOffset off
         const auto facts = rasterizer.setUp(list, view, rasterSettings());
         // Sampled light changes anywhere, and is filtered over the borders of tiles.
         if (evidence != nullptr && !rest && light == nullptr) {
-            wanted = taa.plan(view.width, view.height, facts, *evidence, taaSettings());
+            wanted = plan(facts, *evidence);
         }
         rasterizer.transformAndBin(workers);
     });

@@ -1,12 +1,14 @@
 // Frames that are smaller than the picture.
 
+#include <algorithm>
+
 #include "engine/internal/frame_loop_state.h"
 
 namespace still {
 
 /// Whether the finished picture is enlarged in space.
 bool FrameLoop::State::enlarges() const {
-    return temporal() && upscales(settings.policy);
+    return temporal() && upscales(settings.policy) && !reconstructs;
 }
 
 int FrameLoop::State::renderedWidth() const {
@@ -25,6 +27,73 @@ void FrameLoop::State::enlarge() {
                  bicubic ? EnlargeFilter::bicubic : EnlargeFilter::edge,
                  {enlarged.red.view(), enlarged.green.view(), enlarged.blue.view()}, settings.simd,
                  workers);
+}
+
+/// A ratio that was set begins at `frame`; what was to come after it does not any more.
+void FrameLoop::State::noteRatio(int frame) {
+    if (next_ratio_fx8 == 0) {
+        return;
+    }
+    if (ratio_changes.empty()) {
+        ratio_changes.push_back({-1, settings.policy.ratio_fx8});
+    }
+    std::erase_if(ratio_changes, [&](const RatioChange& c) { return c.first_frame >= frame; });
+    if (ratio_changes.back().ratio_fx8 != next_ratio_fx8) {
+        ratio_changes.push_back({frame, next_ratio_fx8});
+    }
+    next_ratio_fx8 = 0;
+}
+
+int FrameLoop::State::ratioAt(int frame) const {
+    int ratio_fx8 = settings.policy.ratio_fx8;
+    for (const RatioChange& change : ratio_changes) {
+        ratio_fx8 = change.first_frame <= frame ? change.ratio_fx8 : ratio_fx8;
+    }
+    return ratio_fx8;
+}
+
+/// A pixel of the picture gets fewer of a frame's samples than a native one: it looks back twice as
+/// far.
+UpscaleSettings FrameLoop::State::upscaleSettings() const {
+    return {.simd = settings.simd,
+            .width = settings.width,
+            .height = settings.height,
+            .sample_cap = sampleCap(),
+            .ring = std::min(2 * settings.policy.ring, kMaxUpscaleRing)};
+}
+
+std::span<const uint8_t> FrameLoop::State::plan(std::span<const TileFacts> facts,
+                                                const TaaFrame& evidence) {
+    if (reconstructs) {
+        return upscaler.plan(renderedWidth(), renderedHeight(), facts, evidence, upscaleSettings());
+    }
+    return taa.plan(renderedWidth(), renderedHeight(), facts, evidence, taaSettings());
+}
+
+bool FrameLoop::State::restsResolved() {
+    return reconstructs ? upscaler.rest(renderedWidth(), renderedHeight(), upscaleSettings())
+                        : taa.rest(taaSettings());
+}
+
+void FrameLoop::State::gather(const TaaFrame& evidence) {
+    if (reconstructs) {
+        upscaler.resolve(gbuffer, evidence, upscaleSettings(), workers);
+    } else {
+        taa.resolve(gbuffer, evidence, taaSettings(), workers);
+    }
+}
+
+std::span<const uint8_t> FrameLoop::State::changedTiles() const {
+    return reconstructs ? upscaler.changedTiles() : taa.changedTiles();
+}
+
+ImageView<const uint8_t> FrameLoop::State::sampleCount() const {
+    return reconstructs ? upscaler.sampleCount() : taa.sampleCount();
+}
+
+/// Samples with which a pixel is known.
+int FrameLoop::State::fullCount() const {
+    return reconstructs ? int(kTaaPeriod) : sampleCap();
 }
 
 }  // namespace still
