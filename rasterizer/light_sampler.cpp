@@ -226,15 +226,13 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
     }
 }
 
-/// What was kept in tiles that are sampled anew.
+/// What was kept in tiles that are sampled anew: of a block that the picture's border cuts, the
+/// pixel to be kept may lie outside.
 void LightSampler::State::forgetTiles(std::span<const uint8_t> wanted) {
-    if (wanted.empty()) {
-        return;
-    }
     const int tiles_x = (kept_width + kTileSize - 1) / kTileSize;
     for (KeptSample& sample : kept) {
         const int tile = sample.y / kTileSize * tiles_x + sample.x / kTileSize;
-        if (wanted[size_t(tile)] != 0) {
+        if (wanted.empty() || wanted[size_t(tile)] != 0) {
             sample.surface = 0;
         }
     }
