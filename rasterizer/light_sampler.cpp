@@ -131,29 +131,32 @@ void LightSampler::State::draw(LightBatch& batch, int i, int x, int y,
     }
 }
 
-/// The surface points of a block's pixels.
+/// The surface points of a block's pixels, of each quarter together: then their rays are, too.
 void LightSampler::State::collect(const GBuffer& gbuffer, const PixelRays& pixels,
                                   const PixelNumbers::Tile& tile, int x0, int y0,
                                   Scratch& s) const {
     LightBatch& batch = s.batch;
     batch.count = 0;
-    const int x1 = std::min(x0 + kBlock, gbuffer.width());
-    const int y1 = std::min(y0 + kBlock, gbuffer.height());
-    for (int y = y0; y < y1; ++y) {
-        for (int x = x0; x < x1; ++x) {
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const int qx = x0 + quarter % 2 * kBlock / 2, qy = y0 + quarter / 2 * kBlock / 2;
+        for (int i = 0; i < kLightBatch / 4; ++i) {
+            const int x = qx + i % (kBlock / 2), y = qy + i / (kBlock / 2);
+            if (x >= gbuffer.width() || y >= gbuffer.height()) {
+                continue;
+            }
             const uint16_t surface = gbuffer.id.at(x, y) & kSurfaceMask;
             if (surface == 0) {
                 continue;
             }
-            const int i = batch.count++;
-            s.x[i] = uint16_t(x);
-            s.y[i] = uint16_t(y);
-            s.surface[i] = surface;
+            const int p = batch.count++;
+            s.x[p] = uint16_t(x);
+            s.y[p] = uint16_t(y);
+            s.surface[p] = surface;
             const NormalVector n = decodeOctahedral(gbuffer.normal.at(x, y));
-            batch.points[i] = pixels.pointAt(x, y, std::bit_cast<float>(gbuffer.depth.at(x, y)),
+            batch.points[p] = pixels.pointAt(x, y, std::bit_cast<float>(gbuffer.depth.at(x, y)),
                                              normalized({n.x, n.y, n.z}));
-            batch.points[i].shininess = scene.surfaces[surface].shininess;
-            draw(batch, i, x, y, tile);
+            batch.points[p].shininess = scene.surfaces[surface].shininess;
+            draw(batch, p, x, y, tile);
         }
     }
 }

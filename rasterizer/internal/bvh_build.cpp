@@ -16,7 +16,7 @@ namespace {
 constexpr int kBins = 16;
 /// From this depth on ranges are halved, so that no tree is deeper than the traversal's stack.
 constexpr int kHalvingDepth = 24;
-/// Ranges that are cut without looking at the heuristic gain nothing from more bins.
+/// Of boxes that hold nothing: turned inside out.
 constexpr float kEmptyLow = 1e30f;
 
 }  // namespace
@@ -223,6 +223,7 @@ void buildMeshTree(const Mesh& mesh, const std::vector<uint8_t>& holes, MeshTree
     for (size_t l = 0; l < builder.leaves().size(); ++l) {
         TriangleBlock& block = out.blocks[l];
         const TreeBuilder::Leaf& leaf = builder.leaves()[l];
+        std::fill_n(block.triangle, kTreeWidth, kNoTriangle);
         for (uint32_t i = 0; i < leaf.count; ++i) {
             const uint32_t t = builder.order()[leaf.begin + i];
             block.triangle[i] = t | (with_holes[t] != 0 ? kHolesBit : 0u);

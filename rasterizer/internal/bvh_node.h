@@ -28,6 +28,8 @@ constexpr float kBoxMargin = 1.0f / (1 << 21);
 
 /// Of a triangle's number in a block: its material has holes.
 constexpr uint32_t kHolesBit = 0x80000000u;
+/// What stands in a block behind its last triangle.
+constexpr uint32_t kNoTriangle = 0xFFFFFFFFu;
 
 /// A leaf of a mesh's tree. Empty places hold triangles without area, which nothing hits.
 struct alignas(32) TriangleBlock {

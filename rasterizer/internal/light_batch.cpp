@@ -49,8 +49,10 @@ struct Shadows {
         diffuse[count] = light;
         highlight[count++] = shine;
     }
-    void trace(const LightScene& scene, LightBatch& batch) {
-        scene.trace.occluded(scene.tree, rays, count, blocked);
+    /// `together`: from pixels side by side, not from what their bounces hit.
+    void trace(const LightScene& scene, LightBatch& batch, bool together) {
+        const auto occluded = together ? scene.trace.occludedTogether : scene.trace.occluded;
+        occluded(scene.tree, rays, count, blocked);
         for (int i = 0; i < count; ++i) {
             if (blocked[i] == 0) {
                 batch.direct[point[i]] = batch.direct[point[i]] + diffuse[i];
@@ -275,12 +277,12 @@ void addBounce(const LightScene& scene, LightBatch& batch, LightBatch& hits) {
     if (lighting.sampled.sun_shadow != SunShadow::none) {
         Shadows shadows;
         addSun(scene, kRandomHitSun, hits, shadows);
-        shadows.trace(scene, hits);
+        shadows.trace(scene, hits, false);
     }
     if (!scene.lights.empty()) {
         Shadows shadows;
         addAreaLights(scene, kRandomHitLight, true, hits, shadows);
-        shadows.trace(scene, hits);
+        shadows.trace(scene, hits, false);
     }
     for (int h = 0; h < hits.count; ++h) {
         const Float3 light = hits.direct[h] + plainLight(lighting, hits.points[h]);
@@ -315,12 +317,12 @@ void lightBatch(const LightScene& scene, LightBatch& batch, LightBatch& scratch)
     if (sampled.sun_shadow == SunShadow::traced) {
         Shadows shadows;
         addSun(scene, kRandomSun, batch, shadows);
-        shadows.trace(scene, batch);
+        shadows.trace(scene, batch, true);
     }
     if (!scene.lights.empty()) {
         Shadows shadows;
         addAreaLights(scene, kRandomLight, false, batch, shadows);
-        shadows.trace(scene, batch);
+        shadows.trace(scene, batch, true);
     }
     if (sampled.ambient == AmbientLight::traced_occlusion) {
         addOcclusion(scene, batch);

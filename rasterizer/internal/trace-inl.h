@@ -139,10 +139,13 @@ HWY_INLINE uint32_t blockMask(const TriangleBlock& block, const TraceRay& ray, f
 
 #include "rasterizer/internal/trace_walk-inl.h"
 
+#include "rasterizer/internal/trace_packet-inl.h"
+
 }  // namespace
 
 TraceKernels traceHere() {
-    return {occludedRays, closestOfRays};
+    // Packets of four gain nothing over rays that take turns.
+    return {occludedRays, kPacket >= 8 ? occludedPackets : occludedRays, closestOfRays};
 }
 
 }  // namespace HWY_NAMESPACE

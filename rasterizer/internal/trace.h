@@ -35,6 +35,8 @@ struct RayHit {
 struct TraceKernels {
     /// Whether anything lies in each ray's way: 1 or 0.
     void (*occluded)(const SceneTree& scene, const Ray* rays, int count, uint8_t* blocked);
+    /// The same, fast where neighbours in the list begin and end close to one another.
+    void (*occludedTogether)(const SceneTree& scene, const Ray* rays, int count, uint8_t* blocked);
     void (*closest)(const SceneTree& scene, const Ray* rays, int count, RayHit* hits);
 };
 

@@ -133,7 +133,7 @@ bool holeAt(const SceneTree& scene, uint32_t instance, uint32_t triangle, float 
 }
 
 TraceKernels traceReference() {
-    return {occludedRays, closestOfRays};
+    return {occludedRays, occludedRays, closestOfRays};
 }
 
 }  // namespace still::internal

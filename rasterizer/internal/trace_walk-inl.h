@@ -89,6 +89,19 @@ inline Step stepOf(const SceneTree& scene, OcclusionWalk& walk) {
     return blocked ? Step::blocked : Step::goes_on;
 }
 
+/// Of one ray and the triangles of one instance.
+inline bool instanceOccludes(const SceneTree& scene, uint32_t instance, const Ray& ray) {
+    OcclusionWalk walk;
+    walk.start(scene, ray);
+    walk.size = 0;
+    walk.enter(scene, instance);
+    Step step = Step::goes_on;
+    while (step == Step::goes_on) {
+        step = stepOf(scene, walk);
+    }
+    return step == Step::blocked;
+}
+
 /// The same for the closest hit. Children wait with where the ray enters them; the nearest of a
 /// node's comes first, the others as they lie.
 struct ClosestWalk {

@@ -200,6 +200,44 @@ TEST_CASE("trace: every target finds the very same hits", "[determinism]") {
     }
 }
 
+TEST_CASE("trace: rays that are traced together are blocked as they are alone", "[determinism]") {
+    TestScene scene = soups(11);
+    scene.materials.resize(2);
+    scene.materials[1].alpha_mode = AlphaMode::stochastic;
+    scene.materials[1].opacity = 0.5f;
+    Random random(12);
+    for (Mesh& mesh : scene.meshes) {
+        for (MeshPart& part : mesh.parts) {
+            part.material = uint32_t(random.integer(0, 1));
+        }
+    }
+    const DrawList list = scene.list();
+    Workers workers(1);
+    SceneTree tree;
+    TreeKeeper keeper;
+    keeper.update(list, tree, workers);
+    // Bundles of any number of rays, narrow ones and wide ones.
+    for (int bundle = 0; bundle < 600; ++bundle) {
+        const Ray first = randomRay(random);
+        const float width = float(random.real(0, 1)) * float(random.integer(0, 1)) + 0.01f;
+        std::vector<Ray> rays(size_t(random.integer(1, 40)), first);
+        for (Ray& ray : rays) {
+            for (int k = 0; k < 3; ++k) {
+                ray.origin[k] += width * float(random.real(-1, 1));
+                ray.direction[k] += width * float(random.real(-1, 1));
+            }
+            ray.random = uint32_t(random.integer(0, 1 << 30));
+        }
+        std::vector<uint8_t> alone(rays.size()), together(rays.size());
+        traceReference().occluded(tree, rays.data(), int(rays.size()), alone.data());
+        for (SimdTarget target : availableSimdTargets()) {
+            traceFor(target).occludedTogether(tree, rays.data(), int(rays.size()), together.data());
+            CAPTURE(bundle, name(target));
+            REQUIRE(together == alone);
+        }
+    }
+}
+
 TEST_CASE("trace: no ray slips between triangles that share an edge") {
     // A bumpy ball around the origin; rays go to its corners and to points on its edges.
     constexpr int kAround = 24, kUp = 12;
