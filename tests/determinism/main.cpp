@@ -19,9 +19,10 @@ struct Case {
     int width, height, frames;
 };
 constexpr Case kCases[] = {
-    {"triangle", 65, 47, 4}, {"cubes", 321, 179, 6}, {"checker", 321, 179, 4},
-    {"fence", 321, 179, 4},  {"glass", 257, 131, 5}, {"lights", 257, 131, 4},
-    {"zoo", 321, 179, 6},    {"pan", 321, 179, 5},   {"courtyard", 321, 179, 4},
+    {"triangle", 65, 47, 4}, {"cubes", 321, 179, 6},   {"checker", 321, 179, 4},
+    {"fence", 321, 179, 4},  {"glass", 257, 131, 5},   {"lights", 257, 131, 4},
+    {"zoo", 321, 179, 6},    {"pan", 321, 179, 5},     {"courtyard", 321, 179, 4},
+    {"cornell", 129, 97, 4}, {"penumbra", 161, 93, 5}, {"contact", 129, 67, 3},
 };
 
 struct Configuration {
