@@ -375,3 +375,70 @@ TEST_CASE("jitter: ssaa sets of any size are distinct and nearly centred", "[uni
         CHECK(std::abs(y) <= 30 * int(std::bit_width(count)));
     }
 }
+
+TEST_CASE("jitter: the sequence of upscaling grows with the ratio's square", "[unit]") {
+    CHECK(upscalePeriod(kNativeRatio_fx8) == 64);
+    CHECK(upscalePeriod(257) == 128);
+    CHECK(upscalePeriod(333) == 128);  // 1.3
+    CHECK(upscalePeriod(384) == 256);
+    CHECK(upscalePeriod(512) == 256);
+    CHECK(upscalePeriod(513) == 512);
+    CHECK(upscalePeriod(kMaxRatio_fx8) == kMaxUpscalePeriod);
+}
+
+TEST_CASE("jitter: aligned runs of the sequence of upscaling are nets, and all of it is one",
+          "[unit]") {
+    for (const uint32_t period : {64u, 128u, 256u, 512u, 1024u}) {
+        CAPTURE(period);
+        std::vector<SampleOffset> all;
+        for (uint32_t i = 0; i < period; ++i) {
+            all.push_back(upscaleSample(i, period));
+        }
+        CHECK(inRange(all));
+        CHECK((upscaleSample(period + 5, period).x_fx8 == all[5].x_fx8));
+        for (uint32_t run = 2; run <= std::min(period, 256u); run *= 2) {
+            for (uint32_t first = 0; first < period; first += run) {
+                CHECK(isNet({all.begin() + first, all.begin() + first + run}));
+            }
+        }
+        const auto [x, y] = sumOf(all);
+        CHECK((2 * std::abs(x) <= int(period) && 2 * std::abs(y) <= int(period)));
+    }
+}
+
+TEST_CASE("jitter: every quarter of a frame's pixel gets a quarter of the samples, from the start",
+          "[unit]") {
+    const uint32_t period = upscalePeriod(512);
+    std::array<std::vector<SampleOffset>, 4> quarters;
+    for (uint32_t i = 0; i < period; ++i) {
+        const SampleOffset s = upscaleSample(i, period);
+        quarters[(s.x_fx8 >= 0 ? 1u : 0u) + (s.y_fx8 >= 0 ? 2u : 0u)].push_back(s);
+        if (i % 4 == 3) {
+            for (const auto& quarter : quarters) {
+                CHECK(quarter.size() == i / 4 + 1);
+            }
+        }
+    }
+}
+
+TEST_CASE("jitter: policies that upscale in time take the long sequence, others their pattern",
+          "[unit]") {
+    const auto same = [](SampleOffset a, SampleOffset b) {
+        return a.x_fx8 == b.x_fx8 && a.y_fx8 == b.y_fx8;
+    };
+    const TaaPolicy quality = findPreset("quality")->policy;
+    CHECK(policyPeriod(quality) == 256);
+    CHECK(same(policySample(quality, 77), upscaleSample(77, 256)));
+    CHECK(policyPeriod(findPreset("ultra")->policy) == 1024);
+    TaaPolicy halton = quality;
+    halton.jitter = JitterPattern::halton8;
+    CHECK(policyPeriod(halton) == 8);
+    CHECK(same(policySample(halton, 3), jitterSample(JitterPattern::halton8, 256, false, 3)));
+    TaaPolicy narrow = quality;
+    narrow.jitter_scale_fx8 = 128;
+    CHECK(std::abs(policySample(narrow, 9).x_fx8 * 2 - upscaleSample(9, 256).x_fx8) <= 1);
+    CHECK(policyPeriod(findPreset("bicubic")->policy) == kTaaPeriod);
+    CHECK(same(policySample({}, 70), taaSample(70)));
+    CHECK(finishingSamples({}) == int(kTaaPeriod));
+    CHECK(finishingSamples(quality) == 256);
+}
