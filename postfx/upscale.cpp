@@ -314,6 +314,14 @@ void TemporalUpscaler::State::advanceRing(const TaaFrame& frame, bool shading_ch
     noteJitter(kept.planes);
 }
 
+/// Samples with which a still pixel's mean is nearer to the truth than what is gathered: a few more
+/// than the ring's frames bring. Measured at ratios of 1.5, 2 and 3: postfx/README.md.
+static int settledCount(const UpscaleSettings& settings, const Job& job) {
+    const int64_t frame_pixels = int64_t(job.x.frame) * job.y.frame;
+    const int64_t image_pixels = int64_t(job.x.image) * job.y.image;
+    return 1 + int(settings.ring * 5 * frame_pixels / (4 * image_pixels));
+}
+
 Job TemporalUpscaler::State::makeJob(const GBuffer& gbuffer, const UpscaleSettings& settings) {
     Job job;
     taa::Job& frame = job.frame;
@@ -359,7 +367,7 @@ Job TemporalUpscaler::State::makeJob(const GBuffer& gbuffer, const UpscaleSettin
     job.sums.frames = sum_frames.view().data;
     job.shown_count = shown_count.view().data;
     job.sample_cap = settings.sample_cap;
-    job.settled = std::min(taa::kSettled, settings.sample_cap);
+    job.settled = std::min(settledCount(settings, job), settings.sample_cap);
     return job;
 }
 

@@ -21,6 +21,14 @@ int sampleIn(const Axis& axis, int output, int jitter_fx8) {
     return -1;
 }
 
+void show(const Job& job, ptrdiff_t at) {
+    const uint32_t count = job.sums.count[at];
+    for (int c = 0; c < 3; ++c) {
+        job.shown[c][at] = uint16_t((job.sums.colour[c][at] + count / 2) / count);
+    }
+    job.shown_count[at] = uint8_t(std::min(count, 255u));
+}
+
 void addSample(const Job& job, ptrdiff_t at, ptrdiff_t from, bool first) {
     const int count = (first ? 0 : job.sums.count[at]) + 1;
     job.sums.count[at] = uint16_t(count);
@@ -28,14 +36,9 @@ void addSample(const Job& job, ptrdiff_t at, ptrdiff_t from, bool first) {
         const uint32_t past = first ? 0 : job.sums.colour[c][at];
         job.sums.colour[c][at] = past + job.frame.now.colour[c][from];
     }
-}
-
-void show(const Job& job, ptrdiff_t at) {
-    const uint32_t count = job.sums.count[at];
-    for (int c = 0; c < 3; ++c) {
-        job.shown[c][at] = uint16_t((job.sums.colour[c][at] + count / 2) / count);
+    if (count >= job.settled) {
+        show(job, at);
     }
-    job.shown_count[at] = uint8_t(std::min(count, 255u));
 }
 
 }  // namespace
@@ -72,9 +75,6 @@ SumsResult accumulateTileReference(const Job& job, const TileRect& tile, Stillne
                 ++frames;
             }
             job.sums.frames[at] = uint16_t(frames);
-            if (job.sums.count[at] >= job.settled) {
-                show(job, at);
-            }
             result.settled &= job.sums.count[at] >= job.settled;
             result.finished &= frames >= job.sample_cap;
         }
