@@ -7,6 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -19,6 +21,9 @@
 #include "demos/scenes/builtin.h"
 #include "demos/stillframe/bench_scaling.h"
 #include "engine/frame_loop.h"
+#include "engine/load.h"
+#include "engine/timeline.h"
+#include "rasterizer/light_sampler.h"
 
 namespace still {
 namespace {
@@ -45,6 +50,7 @@ class Fixture {
     }
 
     const Extent extent;
+    Scene sponza;  ///< empty where it is not to be found
 
   private:
     std::map<std::pair<std::string, BenchMotion>, Scene> scenes_;
@@ -136,6 +142,86 @@ void addSection(const char* stage_name, size_t from_end, BenchMotion motion, Sim
         });
 }
 
+/// Sampled light at one sample a pixel, all of it: points, rays, what they bring. Items are pixels
+/// that a surface is in; each has a ray, and up to two more where a bounce hits.
+struct TraceCase {
+    const char* name;
+    SampledLight light;
+};
+
+void addTrace(const TraceCase& effect, const std::string& scene_name, const Scene& scene,
+              SimdTarget simd, const Extent& extent) {
+    add(std::string("trace_") + effect.name + "/" + scene_name + "/" + std::string(name(simd)),
+        extent, [=, &scene](benchmark::State& state) {
+            FrameState frame = frameStateAt(scene, {}, 0, extent.width, extent.height);
+            DrawList list{.meshes = scene.meshes,
+                          .materials = materialsOf(scene, frame),
+                          .textures = scene.textures,
+                          .alpha_textures = scene.alpha_textures,
+                          .instances = frame.instances,
+                          .lighting = frame.lighting,
+                          .background = scene.background};
+            list.lighting.sampled = effect.light;
+            FrameView view{.width = extent.width,
+                           .height = extent.height,
+                           .view_projection = frame.camera.view_projection,
+                           .view_projection_before = frame.camera.view_projection,
+                           .eye = glm::vec3(frame.camera.eye)};
+            Workers workers(1);
+            Rasterizer rasterizer;
+            GBuffer gbuffer;
+            rasterizer.transformAndBin(list, view, {.simd = simd, .planes = {.normal = true}},
+                                       workers);
+            rasterizer.rasterize(gbuffer, workers);
+            LightSampler sampler;
+            LightImages light;
+            for (auto _ : state) {
+                sampler.setUp(list, view, simd, workers);
+                const double start_ms = command::threadTimeMs();
+                sampler.sample(gbuffer, light, true, workers);
+                state.SetIterationTime((command::threadTimeMs() - start_ms) * 1e-3);
+                ++view.sample;
+            }
+            state.SetItemsProcessed(int64_t(rasterizer.counters().pixels_shaded) *
+                                    int64_t(state.iterations()));
+        });
+}
+
+/// Light of the courtyard's size, and ways of `distance` for occlusion.
+std::vector<TraceCase> traceCases(std::array<float, 3> lamp, float radius, float distance) {
+    return {
+        {"sun", {.sun_shadow = SunShadow::traced, .sun_tangent = 0.02f}},
+        {"sphere", {.spheres = {{lamp, radius, {1, 1, 1}}}}},
+        {"occlusion", {.ambient = AmbientLight::traced_occlusion, .occlusion_distance = distance}},
+        {"bounce",
+         {.sun_shadow = SunShadow::traced, .sun_tangent = 0.02f, .ambient = AmbientLight::bounce}}};
+}
+
+/// Sponza from within, where STILL_DATA has it.
+void addSponza(Fixture& fixture) {
+    const char* data = std::getenv("STILL_DATA");
+    if (data == nullptr) {
+        return;
+    }
+    auto loaded = loadScene(std::string(data) + "/sponza/sponza.obj");
+    if (!loaded) {
+        return;
+    }
+    fixture.sponza = std::move(*loaded);
+    Camera& camera = fixture.sponza.camera;
+    camera.eye.keys = {{0, {1050, 180, -40}}};
+    camera.target.keys = {{0, {-300, 330, -30}}};
+    camera.fov_y_deg.keys = {{0, 60}};
+    camera.near = 1.4;
+    camera.far = 14000;
+    fixture.sponza.lights.sun.direction = {0.2852f, -0.9507f, 0.1141f};
+    for (const SimdTarget simd : availableSimdTargets()) {
+        for (const TraceCase& effect : traceCases({-50, 900, -40}, 70, 200)) {
+            addTrace(effect, "sponza", fixture.sponza, simd, fixture.extent);
+        }
+    }
+}
+
 void addAll(Fixture& fixture) {
     for (const SimdTarget simd : availableSimdTargets()) {
         for (const char* scene : {"courtyard", "bench-tiny"}) {
@@ -153,6 +239,13 @@ void addAll(Fixture& fixture) {
         addSection("taa_sums", 2, BenchMotion::still, simd, fixture);
     }
     addSection("output", 0, BenchMotion::pan, bestSimdTarget(), fixture);
+    for (const SimdTarget simd : availableSimdTargets()) {
+        for (const TraceCase& effect : traceCases({2, 5, 0}, 0.4f, 1)) {
+            addTrace(effect, "courtyard", fixture.scene("courtyard", BenchMotion::still), simd,
+                     fixture.extent);
+        }
+    }
+    addSponza(fixture);
 }
 
 int run(int argc, char** argv) {
