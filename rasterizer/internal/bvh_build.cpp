@@ -14,8 +14,10 @@ namespace still::internal {
 namespace {
 
 constexpr int kBins = 16;
-/// From this depth on ranges are halved, so that no tree is deeper than the traversal's stack.
-constexpr int kHalvingDepth = 24;
+/// From this depth on the range with the most boxes is halved. Each child then has at most a
+/// quarter of its parent's: no tree is deeper than 16 + 16 nodes, and two of them, with seven
+/// children waiting in each node, fit into kTraceStack.
+constexpr int kHalvingDepth = 16;
 /// Of boxes that hold nothing: turned inside out.
 constexpr float kEmptyLow = 1e30f;
 
@@ -133,12 +135,14 @@ uint32_t TreeBuilder::addNode(const Range& range, int depth, std::vector<BvhNode
     nodes.emplace_back();
     std::vector<Range> ranges{range};
     while (ranges.size() < size_t(kTreeWidth)) {
+        const bool halve = depth >= kHalvingDepth;
         size_t largest = ranges.size();
-        float area = -1.0f;
+        float size = -1.0f;
         for (size_t i = 0; i < ranges.size(); ++i) {
-            const float a = ranges[i].box.halfArea();
-            if (ranges[i].end - ranges[i].begin > leaf_size_ && a > area) {
-                area = a;
+            const uint32_t count = ranges[i].end - ranges[i].begin;
+            const float s = halve ? float(int32_t(count)) : ranges[i].box.halfArea();
+            if (count > leaf_size_ && s > size) {
+                size = s;
                 largest = i;
             }
         }
@@ -146,7 +150,7 @@ uint32_t TreeBuilder::addNode(const Range& range, int depth, std::vector<BvhNode
             break;
         }
         const Range cut = ranges[largest];
-        const uint32_t middle = splitAt(cut, depth >= kHalvingDepth);
+        const uint32_t middle = splitAt(cut, halve);
         ranges[largest] = rangeOf(cut.begin, middle);
         ranges.insert(ranges.begin() + ptrdiff_t(largest) + 1, rangeOf(middle, cut.end));
     }

@@ -294,6 +294,35 @@ TEST_CASE("trace: no ray slips between triangles that share an edge") {
     }
 }
 
+TEST_CASE("trace: no tree is too deep for the stack of those who walk through it") {
+    // Each triangle is much smaller than the one before, around one point, and many are the same.
+    TestScene scene;
+    scene.addMesh();
+    double size = 1e6;
+    for (int i = 0; i < 3000; ++i) {
+        size = i % 2 == 0 && size > 1e-30 ? size * 0.93 : size;
+        scene.addTriangle(vertexAt(0, 0, 0), vertexAt(size, size * 0.1, 0),
+                          vertexAt(0, size, size * 0.2));
+    }
+    const DrawList list = scene.list();
+    Workers workers(1);
+    SceneTree tree;
+    TreeKeeper keeper;
+    keeper.update(list, tree, workers);
+    const auto depthOf = [&](const auto& self, const std::vector<BvhNode>& nodes,
+                             uint32_t at) -> int {
+        int deepest = 0;
+        for (uint32_t child : nodes[at].child) {
+            if ((child & kLeafBit) == 0) {
+                deepest = std::max(deepest, self(self, nodes, child));
+            }
+        }
+        return deepest + 1;
+    };
+    const auto& nodes = tree.instances[0].tree->nodes;
+    CHECK(2 * 7 * depthOf(depthOf, nodes, 0) + 2 * kTreeWidth < kTraceStack);
+}
+
 TEST_CASE("trace: of equal distances the first instance and the first triangle count") {
     TestScene scene;
     for (int mesh = 0; mesh < 3; ++mesh) {
