@@ -60,7 +60,6 @@ struct KeptFrame {
                 .y = y,
                 .stride = planes.planes[0].view().stride};
     }
-    bool sameSize(const KeptFrame& o) const { return x.frame == o.x.frame && y.frame == o.y.frame; }
 };
 
 }  // namespace
@@ -342,12 +341,13 @@ Job TemporalUpscaler::State::makeJob(const GBuffer& gbuffer, const UpscaleSettin
         const int slot = (cursor + settings.ring - k) % settings.ring;
         job.slot[k] = ring[size_t(slot)].slot();
     }
-    frame.frames = 1;
-    frame.slot[0] = job.slot[0].in;
-    if (frames > 1 && job.slot[1].x.frame == frame_width && job.slot[1].y.frame == frame_height) {
-        frame.frames = 2;
-        frame.slot[1] = job.slot[1].in;
+    // Those of the frame's size.
+    while (frame.frames <= frames && job.slot[frame.frames - 1].x.frame == frame_width &&
+           job.slot[frame.frames - 1].y.frame == frame_height) {
+        frame.slot[frame.frames - 1] = job.slot[frame.frames - 1].in;
+        ++frame.frames;
     }
+    --frame.frames;
     frame.record = ring[size_t(cursor)].planes.pointers<taa::SlotOut>();
     frame.hint = hint.view().data;
     frame.change_age = since_change < settings.ring ? change_age.data() : nullptr;
@@ -499,10 +499,13 @@ void TemporalUpscaler::resolve(const GBuffer& gbuffer, const TaaFrame& frame,
         s.showFirst(gbuffer, frame, settings.simd, workers);
         return;
     }
+    const upscale::GatherKernel gather = job.frame.frames == job.frames
+                                             ? taa::upscaleKernel(settings.simd)
+                                             : upscale::gatherTileReference;
     forTiles([&](int tile) {
         const TileMemory& memory = s.tiles[size_t(tile)];
         if (!memory.settled) {
-            upscale::gatherTileReference(job, s.rectOf(tile), memory.summed);
+            gather(job, s.rectOf(tile), memory.summed);
         }
     });
 }

@@ -7,8 +7,13 @@ HWY_BEFORE_NAMESPACE();
 namespace still::taa {
 namespace HWY_NAMESPACE {
 
+/// Frames to follow at most: in all windows, and in those with little and next to no contrast.
+struct FrameLimits {
+    int most = kMaxRing, calm = kCalmFrames, flat = kFlatFrames;
+};
+
 /// Frames to follow by the windows' contrast alone: see lookAround().
-HWY_INLINE VS calmFrames(const Job& job, int x, int y) {
+HWY_INLINE VS calmFrames(const Job& job, int x, int y, const FrameLimits& limits) {
     const DS d;
     const ptrdiff_t middle = y * job.stride + x;
     const ptrdiff_t at[3] = {y > 0 ? middle - job.stride : middle, middle,
@@ -39,8 +44,8 @@ HWY_INLINE VS calmFrames(const Job& job, int x, int y) {
         lively = hn::Or(lively, excess(hn::ShiftRight<kCalmShift>(largest)));
     }
     const MS flat = hn::Eq(sign(loud), zero()), calm = hn::Eq(sign(lively), zero());
-    return hn::IfThenElse(flat, set(kFlatFrames),
-                          hn::IfThenElse(calm, set(kCalmFrames), set(kMaxRing)));
+    return hn::IfThenElse(flat, set(limits.flat),
+                          hn::IfThenElse(calm, set(limits.calm), set(limits.most)));
 }
 
 /// The farther layers of the windows where there are two.
@@ -79,7 +84,8 @@ HWY_NOINLINE void lookBehind(const Job& job, int x, int y, MS pixels, VS bound, 
 }
 
 /// lookAround() for a group, whose owners stand in this frame's record.
-HWY_NOINLINE void windowOf(const Job& job, int x, int y, MS pixels, WindowLanes& w) {
+HWY_NOINLINE void windowOf(const Job& job, int x, int y, MS pixels, WindowLanes& w,
+                           const FrameLimits& limits = {}) {
     const DS d;
     const SlotIn& now = job.slot[0];
     const ptrdiff_t at = y * job.stride + x;
@@ -105,12 +111,13 @@ HWY_NOINLINE void windowOf(const Job& job, int x, int y, MS pixels, WindowLanes&
     w.any_apart = false;
     lookBehind(job, x, y, pixels,
                hn::SaturatedSub(w.owner.depth, hn::Add(w.owner.tolerance, sloped)), w);
-    w.frames = hn::IfThenElse(hn::Or(w.layered, inferred), set(kMaxRing), calmFrames(job, x, y));
-    w.flat = hn::Eq(w.frames, set(kFlatFrames));
+    w.frames = hn::IfThenElse(hn::Or(w.layered, inferred), set(limits.most),
+                              calmFrames(job, x, y, limits));
+    w.flat = hn::Eq(w.frames, set(limits.flat));
     const VS speed = hn::Max(magnitude(w.owner.motion[0]), magnitude(w.owner.motion[1]));
     w.frames =
         hn::IfThenElse(hn::Gt(speed, set(kFast)), hn::Min(w.frames, set(kFastFrames)), w.frames);
-    w.lit_frames = set(kMaxRing);
+    w.lit_frames = set(limits.most);
     if (job.light_age != nullptr) {
         const hn::Rebind<uint8_t, DS> d8;
         const VS age = hn::PromoteTo(d, hn::LoadU(d8, job.light_age + at));
@@ -143,7 +150,7 @@ HWY_NOINLINE void collect(const Job& job, int x, int y, const Way& way, const La
     outlook.start(layer);
     for (int k = 0; k < way.frames; ++k) {
         const SlotIn& slot = job.slot[k];
-        const Way::Stop& stop = way.stop[k];
+        const WayStop& stop = way.stop[k];
         if (k > 0) {
             outlook.next(layer);
             rule.next();

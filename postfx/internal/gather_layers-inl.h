@@ -66,16 +66,18 @@ struct Depths {
     }
 };
 
-/// Where a layer was in each frame.
-struct Way {
-    struct Stop {
-        PlaceLanes place;
-        VS motion[2];  ///< from the frame after to this one
-        MS alive;      ///< lanes that are followed so far
-    };
-    Stop stop[kMaxRing];
+/// Where a layer was in a frame.
+struct WayStop {
+    PlaceLanes place;
+    VS motion[2];  ///< from the frame after to this one
+    MS alive;      ///< lanes that are followed so far
+};
+template <int kStops>
+struct WayOf {
+    WayStop stop[kStops];
     int frames = 0;
 };
+using Way = WayOf<kMaxRing>;
 
 /// The end of a way while it is being found.
 struct Walker {
@@ -94,8 +96,9 @@ struct Walker {
 };
 
 /// follow(), the way alone, one frame on; nothing when no lane is alive.
+template <int kStops>
 HWY_NOINLINE void stepWay(const Job& job, int k, bool last, const LayerLanes& layer, VS limit,
-                          Walker& walker, Way& way) {
+                          Walker& walker, WayOf<kStops>& way) {
     const DS d;
     const SlotIn& slot = job.slot[k];
     if ((job.light_age != nullptr && k > 0) || k == kFlatFrames || k == kTurningFrames ||
@@ -236,7 +239,7 @@ struct View {
     const SlotIn& slot;
     const Site& site;
     const Clusters& clusters;
-    const Way::Stop& stop;
+    const WayStop& stop;
     const Outlook& outlook;  ///< of the layer
 };
 

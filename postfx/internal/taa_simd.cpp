@@ -1,6 +1,7 @@
 // Compiles the SIMD kernels once per target and hands out those for a target.
 
 #include "postfx/internal/kernels.h"
+#include "postfx/internal/upscale_gather.h"
 
 #if STILL_SIMD
 
@@ -14,6 +15,7 @@
 #include <type_traits>
 
 #include "postfx/internal/rules.h"
+#include "postfx/internal/upscale_rules.h"
 #include "rasterizer/internal/dispatch.h"
 
 // Each rests on those before. Highway's one-lane target lacks shuffles and is never asked for: the
@@ -28,6 +30,8 @@
 #include "postfx/internal/gather_layers-inl.h"
 #include "postfx/internal/gather_fit-inl.h"
 #include "postfx/internal/gather-inl.h"
+#include "postfx/internal/upscale_fetch-inl.h"
+#include "postfx/internal/upscale-inl.h"
 // clang-format on
 #endif
 
@@ -40,6 +44,14 @@ TileKernels kernelsHere() {
     return {};
 #else
     return {recordTile, accumulateTile, gatherTile};
+#endif
+}
+
+upscale::GatherKernel upscaleHere() {
+#if HWY_TARGET == HWY_SCALAR
+    return upscale::gatherTileReference;
+#else
+    return upscaleTile;
 #endif
 }
 
@@ -58,6 +70,14 @@ TileKernels tileKernels(SimdTarget target) {
                : internal::pickKernel(HWY_DISPATCH_TABLE(kernelsHere), target)();
 }
 
+HWY_EXPORT(upscaleHere);
+
+upscale::GatherKernel upscaleKernel(SimdTarget target) {
+    return target == SimdTarget::scalar
+               ? upscale::gatherTileReference
+               : internal::pickKernel(HWY_DISPATCH_TABLE(upscaleHere), target)();
+}
+
 }  // namespace still::taa
 #endif
 
@@ -67,6 +87,10 @@ namespace still::taa {
 
 TileKernels tileKernels(SimdTarget) {
     return {};
+}
+
+upscale::GatherKernel upscaleKernel(SimdTarget) {
+    return upscale::gatherTileReference;
 }
 
 }  // namespace still::taa

@@ -226,8 +226,9 @@ bool counts(const Job& job, const Window& window, int k, Place place, const Slot
             ptrdiff_t at, Motion motion) {
     const int surface = slot.id[at] & int(kSurfaceMask);
     const bool moved = (slot.id[at] & int(kMovedBit)) != 0;
-    if (place == Place::farther && !window.moved && moved && surface != window.far.surface) {
-        return false;
+    if (place == Place::farther && !window.moved && moved &&
+        !(window.layered && surface == window.far.surface)) {
+        return false;  // it only went by
     }
     const bool plain = place == Place::same || (place == Place::farther && window.layered);
     if (!plain || (window.moved && moved)) {
@@ -288,7 +289,7 @@ void visitSamples(const Job& job, const Way& way, Offset offset, Visit&& visit) 
             const int ex = slot.x.toImage(dx), ey = slot.y.toImage(dy);
             const int weight = narrowWeight(ex, ey) + (k == 0 ? tentWeight(dx, dy) : kFarWeight);
             if (weight > 0 && inside(slot, ix, iy) && jitter.sameAs(jitterAt(slot, ix, iy))) {
-                visit(k, slot.in, iy * slot.stride + ix, stop.motion, weight, ex >> 2, ey >> 2);
+                visit(k, slot.in, iy * slot.stride + ix, stop.motion, weight, upscale::placeOf(ex), upscale::placeOf(ey));
             }
         }
     }

@@ -39,6 +39,13 @@ constexpr int tentWeight(int ex_frame_fx8, int ey_frame_fx8) {
     const auto side = [](int e) { return std::max(256 - (e < 0 ? -e : e), 0); };
     return (side(ex_frame_fx8) * side(ey_frame_fx8)) >> 11;
 }
+/// Places of samples from an output pixel's centre: 1/256 output pixel to 1/64, held where tilted
+/// weights fit 16 bits.
+constexpr int kFarthest = 100;
+static_assert(kFarthest * taa::kMaxTilt < 32768);
+constexpr int placeOf(int e_fx8) {
+    return std::clamp(e_fx8 >> 2, -kFarthest, kFarthest);
+}
 /// All weights of a pixel, before and after the tilt.
 constexpr int kMaxTotal = kMaxUpscaleRing * (kSampleWeight + kFarWeight) * 3 / 2 + 4 * 160 * 2;
 static_assert(kMaxTotal <= taa::kMaxTotal);
