@@ -32,6 +32,12 @@ FrameSettings Pane::settings() const {
     return settings;
 }
 
+void Pane::setRatio(int ratio_fx8) {
+    if (temporal() && upscalesInTime(mode_.policy)) {
+        loop_->setRatio(ratio_fx8);
+    }
+}
+
 /// Recursive methods have no end of their own: they rest when a whole period of the jitter has
 /// changed nothing. What has no history still wants a frame in which nothing moves.
 void Pane::watchForRest() {

@@ -21,6 +21,10 @@ class Pane {
     const Mode& mode() const { return mode_; }
     FrameSettings settings() const;
 
+    /// Frames from the next one on are smaller than the picture by this ratio, in modes that
+    /// upscale in time; others stay as they are.
+    void setRatio(int ratio_fx8);
+
     /// Whether finishing the picture takes further frames of a film that stands.
     bool wantsFrames() const { return !reference_ && !at_rest_; }
     /// … or calls of refine().

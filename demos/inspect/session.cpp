@@ -34,6 +34,10 @@ void Session::resize(int width, int height) {
 
 void Session::setRenderScale(int percent) {
     assert(percent >= 10 && percent <= 100);
+    if (state_->upscalesInTime()) {
+        state_->setFrameScale(percent);
+        return;
+    }
     if (percent == state_->render_percent) {
         return;
     }
@@ -48,8 +52,15 @@ void Session::setRenderScale(int percent) {
     }
 }
 
+void Session::resetRenderScale() {
+    state_->setFrameScale(0);
+    if (!state_->upscalesInTime()) {
+        setRenderScale(100);
+    }
+}
+
 int Session::renderScale() const {
-    return state_->render_percent;
+    return state_->upscalesInTime() ? state_->frameScale() : state_->render_percent;
 }
 
 int Session::renderWidth() const {

@@ -70,8 +70,11 @@ class Session {
     void setScene(Scene scene, bool keep_camera);
 
     void resize(int width, int height);
-    /// Panes are rendered at this part of the window's size and scaled up; 10 … 100.
+    /// Panes are rendered at this part of the window's size and scaled up; 10 … 100. Where all of
+    /// them upscale in time, it is their frames that get smaller (34 at least), and histories go
+    /// on; else all begin anew.
     void setRenderScale(int percent);
+    void resetRenderScale();  ///< 100, or what the panes' modes say
     int renderScale() const;
     int renderWidth() const;
     int renderHeight() const;

@@ -61,6 +61,36 @@ FrameSettings Session::State::base() const {
     return base;
 }
 
+bool Session::State::upscalesInTime() const {
+    return std::all_of(slots.begin(), slots.begin() + activePanes(), [](const Slot& slot) {
+        return slot.wanted.mode.anti_aliasing == AntiAliasing::taa &&
+               still::upscalesInTime(slot.wanted.mode.policy);
+    });
+}
+
+int Session::State::frameScale() const {
+    const int ratio_fx8 = slots[0].wanted.mode.policy.ratio_fx8;
+    return frame_percent > 0 ? frame_percent : (25600 + ratio_fx8 / 2) / ratio_fx8;
+}
+
+int Session::State::ratioOf(const Slot& slot) const {
+    return frame_percent > 0 ? std::clamp(25600 / frame_percent, kNativeRatio_fx8, kMaxRatio_fx8)
+                             : slot.wanted.mode.policy.ratio_fx8;
+}
+
+/// 0: as small as their modes say.
+void Session::State::setFrameScale(int percent) {
+    if (percent == frame_percent || percent == frameScale()) {
+        return;
+    }
+    frame_percent = percent;
+    for (Slot& slot : slots) {
+        if (slot.pane) {
+            slot.pane->setRatio(ratioOf(slot));
+        }
+    }
+}
+
 /// Another scene or size: all that was drawn is gone.
 void Session::State::beginFilm() {
     for (Slot& slot : slots) {
@@ -76,12 +106,21 @@ void Session::State::beginFilm() {
 /// Begins panes that are not there or whose mode has changed. True when there is a new one.
 bool Session::State::makePanes() {
     bool made = false;
+    const bool other_mode = std::any_of(slots.begin(), slots.end(), [](const Slot& slot) {
+        return slot.pane && !(slot.pane->mode() == slot.wanted.mode);
+    });
+    if (other_mode) {
+        setFrameScale(0);
+    }
     for (int i = 0; i < kPanes; ++i) {
         Slot& slot = slots[size_t(i)];
         if (i >= activePanes()) {
             slot.pane.reset();
         } else if (!slot.pane || !(slot.pane->mode() == slot.wanted.mode)) {
             slot.pane = std::make_unique<Pane>(film, base(), slot.wanted.mode, workers);
+            if (frame_percent > 0) {
+                slot.pane->setRatio(ratioOf(slot));
+            }
             made = true;
         }
     }

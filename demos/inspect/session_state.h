@@ -38,7 +38,8 @@ struct Session::State {
     Overlay overlay;
     int reference_frame = -1;  ///< that it is of; −1: none
     int render_percent = 100;
-    bool drawn = false;  ///< `canvas` shows what the last draw() left
+    int frame_percent = 0;  ///< FrameLoop::setRatio() of panes that upscale; 0: their modes' own
+    bool drawn = false;     ///< `canvas` shows what the last draw() left
     Image<Rgb8> canvas;
 
     int renderWidth() const { return std::max(1, settings.width * render_percent / 100); }
@@ -51,6 +52,11 @@ struct Session::State {
     LensPixel renderPixel(int x, int y) const;
     bool errorIsShown() const;
 
+    /// All panes do.
+    bool upscalesInTime() const;
+    int frameScale() const;
+    void setFrameScale(int percent);
+    int ratioOf(const Slot& slot) const;
     void setScene(Scene scene, bool keep_camera);
     void beginFilm();
     FrameSettings base() const;

@@ -123,7 +123,7 @@ void Desk::performView(Action action) {
             return showView(action == Action::next_named_view ? 1 : -1);
         case Action::keep_fps:
             toggle(keep_fps);
-            return session.setRenderScale(keep_fps ? session.renderScale() : 100);
+            return keep_fps ? void() : session.resetRenderScale();
         default:
             return performTime(action);
     }

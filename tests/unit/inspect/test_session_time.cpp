@@ -177,6 +177,34 @@ TEST_CASE("session: another size begins anew and is that of the picture", "[unit
     CHECK(session.draw().image.height == 1);
 }
 
+TEST_CASE("session: panes that upscale in time change their frames' size, and go on",
+          "[unit][session]") {
+    Workers workers(2);
+    Session session(sceneNamed("cubes"), testSettings(), workers);
+    session.pane(0).mode = modeCalled("quality");
+    session.draw();
+    session.draw();
+    CHECK(session.renderScale() == 67);
+    session.setRenderScale(50);
+    session.draw();
+    CHECK(session.renderScale() == 50);
+    CHECK(session.picture(0).width == kTestWidth);
+    CHECK(session.report(0).frames == 3);
+    session.resetRenderScale();
+    CHECK(session.renderScale() == 67);
+    session.setRenderScale(40);
+    session.pane(0).mode = modeCalled("performance");
+    session.draw();
+    CHECK(session.renderScale() == 50);
+    // Beside one that does not, all begin anew at the smaller size.
+    session.look().split = true;
+    session.setRenderScale(50);
+    session.draw();
+    CHECK(session.picture(0).width == kTestWidth / 2);
+    session.resetRenderScale();
+    CHECK(session.renderScale() == 100);
+}
+
 TEST_CASE("session: a picked pixel stays where it is when the panes' scale changes",
           "[unit][session]") {
     Workers workers(2);
