@@ -18,6 +18,8 @@ constexpr int kBins = 16;
 /// quarter of its parent's: no tree is deeper than 16 + 16 nodes, and two of them, with seven
 /// children waiting in each node, fit into kTraceStack.
 constexpr int kHalvingDepth = 16;
+/// More than any cut costs.
+constexpr float kNoCost = 1e38f;
 /// Of boxes that hold nothing: turned inside out.
 constexpr float kEmptyLow = 1e30f;
 
@@ -65,69 +67,65 @@ TreeBuilder::Range TreeBuilder::rangeOf(uint32_t begin, uint32_t end) const {
     return range;
 }
 
+int TreeBuilder::binOf(uint32_t box, const Cut& cut) const {
+    const float at = (centres_[size_t(box) * 3 + size_t(cut.axis)] - cut.low) * cut.scale;
+    return std::min(int(at), kBins - 1);
+}
+
+/// The cheapest cut across `axis`, if it is cheaper than `best`.
+void TreeBuilder::tryAxis(const Range& range, const Box& centres, int axis, Cut& best) const {
+    const float extent = centres.high[axis] - centres.low[axis];
+    Cut cut{.axis = axis, .low = centres.low[axis], .scale = float(kBins) / extent};
+    if (!(extent > 0.0f) || !(cut.scale < 1e30f)) {
+        return;
+    }
+    Box bins[kBins];
+    uint32_t counts[kBins] = {};
+    for (uint32_t i = range.begin; i < range.end; ++i) {
+        const int bin = binOf(order_[i], cut);
+        bins[bin].add(boxes_[order_[i]]);
+        ++counts[bin];
+    }
+    float right_cost[kBins];
+    Box right;
+    uint32_t count = 0;
+    for (int bin = kBins - 1; bin > 0; --bin) {
+        right.add(bins[bin]);
+        count += counts[bin];
+        right_cost[bin] = count == 0 ? kNoCost : right.halfArea() * float(int32_t(count));
+    }
+    Box left;
+    count = 0;
+    for (int bin = 0; bin + 1 < kBins; ++bin) {
+        left.add(bins[bin]);
+        count += counts[bin];
+        cut.bin = bin;
+        cut.cost = left.halfArea() * float(int32_t(count)) + right_cost[bin + 1];
+        if (count > 0 && cut.cost < best.cost) {
+            best = cut;
+        }
+    }
+}
+
 /// Orders the range's boxes and says where its second part begins.
 uint32_t TreeBuilder::splitAt(const Range& range, bool halve) {
-    const uint32_t middle = range.begin + (range.end - range.begin) / 2;
-    Box centres;
-    for (uint32_t i = range.begin; i < range.end; ++i) {
-        centres.add(&centres_[size_t(order_[i]) * 3]);
-    }
-    float best_cost = 3e38f;
-    int best_axis = -1, best_bin = 0;
-    float best_scale = 0.0f;
-    for (int axis = 0; axis < 3 && !halve; ++axis) {
-        const float extent = centres.high[axis] - centres.low[axis];
-        if (!(extent > 0.0f)) {
-            continue;
-        }
-        const float scale = float(kBins) / extent;
-        if (!(scale < 1e30f)) {
-            continue;
-        }
-        Box bins[kBins];
-        uint32_t counts[kBins] = {};
+    Cut best{.cost = kNoCost};
+    if (!halve) {
+        Box centres;
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            const uint32_t box = order_[i];
-            const float at = (centres_[size_t(box) * 3 + size_t(axis)] - centres.low[axis]) * scale;
-            const int bin = std::min(int(at), kBins - 1);
-            bins[bin].add(boxes_[box]);
-            ++counts[bin];
+            centres.add(&centres_[size_t(order_[i]) * 3]);
         }
-        float right_cost[kBins];
-        Box right;
-        uint32_t count = 0;
-        for (int bin = kBins - 1; bin > 0; --bin) {
-            right.add(bins[bin]);
-            count += counts[bin];
-            right_cost[bin] = count == 0 ? 3e38f : right.halfArea() * float(int32_t(count));
-        }
-        Box left;
-        count = 0;
-        for (int bin = 0; bin + 1 < kBins; ++bin) {
-            left.add(bins[bin]);
-            count += counts[bin];
-            if (count == 0 || right_cost[bin + 1] > 1e38f) {
-                continue;
-            }
-            const float cost = left.halfArea() * float(int32_t(count)) + right_cost[bin + 1];
-            if (cost < best_cost) {
-                best_cost = cost;
-                best_axis = axis;
-                best_bin = bin;
-                best_scale = scale;
-            }
+        for (int axis = 0; axis < 3; ++axis) {
+            tryAxis(range, centres, axis, best);
         }
     }
-    if (best_axis < 0) {
-        return middle;
+    if (best.axis < 0) {
+        return range.begin + (range.end - range.begin) / 2;
     }
-    const auto first = order_.begin() + range.begin;
-    const auto second = std::stable_partition(first, order_.begin() + range.end, [&](uint32_t box) {
-        const float at =
-            (centres_[size_t(box) * 3 + size_t(best_axis)] - centres.low[best_axis]) * best_scale;
-        return std::min(int(at), kBins - 1) <= best_bin;
-    });
-    return range.begin + uint32_t(second - first);
+    const auto second =
+        std::stable_partition(order_.begin() + range.begin, order_.begin() + range.end,
+                              [&](uint32_t box) { return binOf(box, best) <= best.bin; });
+    return uint32_t(second - order_.begin());
 }
 
 uint32_t TreeBuilder::addNode(const Range& range, int depth, std::vector<BvhNode>& nodes) {

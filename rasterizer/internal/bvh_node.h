@@ -90,6 +90,14 @@ class TreeBuilder {
         uint32_t begin, end;
         Box box;
     };
+    /// Between bins `bin` and `bin` + 1 of an axis.
+    struct Cut {
+        float cost = 0.0f;
+        int axis = -1, bin = 0;
+        float low = 0.0f, scale = 0.0f;  ///< of the bins
+    };
+    int binOf(uint32_t box, const Cut& cut) const;
+    void tryAxis(const Range& range, const Box& centres, int axis, Cut& best) const;
     Range rangeOf(uint32_t begin, uint32_t end) const;
     uint32_t splitAt(const Range& range, bool halve);
     uint32_t addNode(const Range& range, int depth, std::vector<BvhNode>& nodes);

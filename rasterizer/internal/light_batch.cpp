@@ -268,11 +268,11 @@ void addBounce(const LightScene& scene, LightBatch& batch, LightBatch& hits) {
         }
         const int h = hits.count++;
         owner[h] = i;
-        albedo[h] = surfaceAt(scene, rays[i], hit[i], hits.points[h]);
         for (RandomUse use : {kRandomHitSun, kRandomHitLight, kRandomPick, kRandomHoles}) {
             hits.random[use][h] = batch.random[use][i];
         }
     }
+    surfacesAt(scene, rays, hit, owner, hits.count, hits.points, albedo);
     clear(hits);
     if (lighting.sampled.sun_shadow != SunShadow::none) {
         Shadows shadows;

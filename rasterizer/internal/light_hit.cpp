@@ -24,8 +24,26 @@ Float3 minus(const Float3& a, const Float3& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/// The nearest texel of the level.
-Float3 texelOf(const Texture& texture, float u, float v) {
+/// Asks for memory that is read soon: what bounces hit lies anywhere, and many wait better
+/// together than one by one.
+void fetch(const void* memory) {
+#if defined(__GNUC__)
+    __builtin_prefetch(memory);
+#else
+    (void)memory;
+#endif
+}
+
+/// What a ray hit, while its memory is on the way.
+struct HitSurface {
+    const InstanceTree* instance;
+    const uint32_t* index;  ///< of the corners
+    const Material* material;
+    const uint32_t* texel;  ///< null without a texture
+};
+
+/// The nearest texel of a level that is small enough.
+const uint32_t* texelOf(const Texture& texture, float u, float v) {
     size_t l = 0;
     while (l + 1 < texture.levels.size() &&
            std::max(texture.levels[l].width, texture.levels[l].height) > kLargestLevel) {
@@ -37,31 +55,33 @@ Float3 texelOf(const Texture& texture, float u, float v) {
             texture.wrap == Wrap::repeat ? c - std::floor(c) : std::min(std::max(c, 0.0f), 1.0f);
         return uint32_t(std::min(int(wrapped * float(int32_t(size))), int(size) - 1));
     };
-    const uint32_t texel =
-        texture.texels[level.offset + along(1.0f - v, level.height) * level.stride +
-                       along(u, level.width)];
-    Float3 linear;
-    float* channel[3] = {&linear.x, &linear.y, &linear.z};
-    for (int c = 0; c < 3; ++c) {
-        const float t = float(int32_t(texel >> (10 * c) & kTexelMask));
-        *channel[c] = (t * t) * kTexelToLinear;
-    }
-    return linear;
+    return &texture.texels[level.offset + along(1.0f - v, level.height) * level.stride +
+                           along(u, level.width)];
 }
 
-Float3 albedoOf(const DrawList& list, const Mesh& mesh, const uint32_t* index, const float b[3],
-                const Material& material) {
-    const Float3 diffuse{material.diffuse[0], material.diffuse[1], material.diffuse[2]};
+const uint32_t* texelAt(const DrawList& list, const HitSurface& hit, const float b[3]) {
+    const Material& material = *hit.material;
     if (material.colour_texture == kNoTexture) {
-        return diffuse;
+        return nullptr;
     }
-    const auto& a = mesh.attributes;
-    const float u =
-        ((b[0] * a[index[0]].u + b[1] * a[index[1]].u) + b[2] * a[index[2]].u) + material.u_offset;
-    const float v =
-        ((b[0] * a[index[0]].v + b[1] * a[index[1]].v) + b[2] * a[index[2]].v) + material.v_offset;
-    const Float3 texel = texelOf(list.textures[size_t(material.colour_texture)], u, v);
-    return {diffuse.x * texel.x, diffuse.y * texel.y, diffuse.z * texel.z};
+    const VertexAttributes* a = hit.instance->mesh->attributes.data();
+    const VertexAttributes &c0 = a[hit.index[0]], &c1 = a[hit.index[1]], &c2 = a[hit.index[2]];
+    const float u = ((b[0] * c0.u + b[1] * c1.u) + b[2] * c2.u) + material.u_offset;
+    const float v = ((b[0] * c0.v + b[1] * c1.v) + b[2] * c2.v) + material.v_offset;
+    return texelOf(list.textures[size_t(material.colour_texture)], u, v);
+}
+
+Float3 albedoOf(const HitSurface& hit) {
+    const auto& kd = hit.material->diffuse;
+    if (hit.texel == nullptr) {
+        return {kd[0], kd[1], kd[2]};
+    }
+    float linear[3];
+    for (int c = 0; c < 3; ++c) {
+        const float t = float(int32_t(*hit.texel >> (10 * c) & kTexelMask));
+        linear[c] = (t * t) * kTexelToLinear;
+    }
+    return {kd[0] * linear[0], kd[1] * linear[1], kd[2] * linear[2]};
 }
 
 /// Interpolated vertex normal in the world, of any length.
@@ -81,36 +101,71 @@ Float3 vertexNormal(const InstanceTree& instance, const uint32_t* index, const f
             (m[2] * n.x + m[6] * n.y) + m[10] * n.z};
 }
 
-}  // namespace
-
-Float3 surfaceAt(const LightScene& scene, const Ray& ray, const RayHit& hit, LitPoint& point) {
-    const InstanceTree& instance = scene.tree.instances[hit.instance];
+/// Place and normal, on the side that the ray came from.
+LitPoint pointAt(const DrawList& list, const HitSurface& surface, const Ray& ray, const RayHit& hit,
+                 const float b[3]) {
+    const InstanceTree& instance = *surface.instance;
     const Mesh& mesh = *instance.mesh;
-    const uint32_t* index = &mesh.indices[size_t(hit.triangle) * 3];
-    const float b[3] = {(1.0f - hit.b1) - hit.b2, hit.b1, hit.b2};
     Float3 p[3];
     for (int c = 0; c < 3; ++c) {
-        p[c] = {mesh.x[index[c]], mesh.y[index[c]], mesh.z[index[c]]};
+        const uint32_t vertex = surface.index[c];
+        p[c] = {mesh.x[vertex], mesh.y[vertex], mesh.z[vertex]};
         if (!instance.identity) {
-            p[c] = transformPoint(scene.list->instances[hit.instance].transform, p[c]);
+            p[c] = transformPoint(list.instances[hit.instance].transform, p[c]);
         }
     }
     const Float3 place = plus(plus(scale(p[0], b[0]), scale(p[1], b[1])), scale(p[2], b[2]));
-    // The side that the ray came from.
     const Float3 direction{ray.direction[0], ray.direction[1], ray.direction[2]};
     Float3 flat = normalized(cross(minus(p[1], p[0]), minus(p[2], p[0])));
     flat = dot(flat, direction) > 0.0f ? scale(flat, -1.0f) : flat;
-    Float3 n = normalized(vertexNormal(instance, index, b));
+    Float3 n = normalized(vertexNormal(instance, surface.index, b));
     n = dot(n, n) > 0.5f ? n : flat;
+    const float largest = std::max(std::max(std::fabs(place.x), std::fabs(place.y)),
+                                   std::max(std::fabs(place.z), hit.t));
+    LitPoint point;
     point.normal = dot(n, flat) < 0.0f ? scale(n, -1.0f) : n;
-    const float lift = kLift * std::max(std::max(std::fabs(place.x), std::fabs(place.y)),
-                                        std::max(std::fabs(place.z), hit.t));
-    point.origin = plus(place, scale(flat, lift));
-    point.shininess = 0;
-    const auto part = std::upper_bound(
-        mesh.parts.begin(), mesh.parts.end(), hit.triangle,
-        [](uint32_t t, const MeshPart& q) { return t < q.first_triangle + q.triangle_count; });
-    return albedoOf(*scene.list, mesh, index, b, scene.list->materials[part->material]);
+    point.origin = plus(place, scale(flat, kLift * largest));
+    return point;
+}
+
+}  // namespace
+
+void surfacesAt(const LightScene& scene, const Ray* rays, const RayHit* hits, const int* which,
+                int count, LitPoint* points, Float3* albedos) {
+    HitSurface surfaces[kLightBatch];
+    for (int i = 0; i < count; ++i) {
+        const RayHit& hit = hits[which[i]];
+        HitSurface& s = surfaces[i];
+        s.instance = &scene.tree.instances[hit.instance];
+        s.index = &s.instance->mesh->indices[size_t(hit.triangle) * 3];
+        fetch(s.index);
+    }
+    for (int i = 0; i < count; ++i) {
+        const Mesh& mesh = *surfaces[i].instance->mesh;
+        for (int c = 0; c < 3; ++c) {
+            const uint32_t vertex = surfaces[i].index[c];
+            fetch(&mesh.x[vertex]);
+            fetch(&mesh.y[vertex]);
+            fetch(&mesh.z[vertex]);
+            fetch(mesh.attributes.data() + vertex);
+        }
+    }
+    for (int i = 0; i < count; ++i) {
+        const RayHit& hit = hits[which[i]];
+        HitSurface& s = surfaces[i];
+        const auto& parts = s.instance->mesh->parts;
+        const auto part = std::upper_bound(
+            parts.begin(), parts.end(), hit.triangle,
+            [](uint32_t t, const MeshPart& p) { return t < p.first_triangle + p.triangle_count; });
+        s.material = &scene.list->materials[part->material];
+        const float b[3] = {(1.0f - hit.b1) - hit.b2, hit.b1, hit.b2};
+        s.texel = texelAt(*scene.list, s, b);
+        fetch(s.texel);
+        points[i] = pointAt(*scene.list, s, rays[which[i]], hit, b);
+    }
+    for (int i = 0; i < count; ++i) {
+        albedos[i] = albedoOf(surfaces[i]);
+    }
 }
 
 Float3 plainLight(const Lighting& lighting, const LitPoint& point) {

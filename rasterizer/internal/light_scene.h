@@ -73,8 +73,10 @@ DiscPoint toDisc(const RandomPair& random);
 
 // ---- what a ray hits -------------------------------------------------------------------------
 
-/// The surface that a ray hits, as a point to be lit; its albedo.
-Float3 surfaceAt(const LightScene& scene, const Ray& ray, const RayHit& hit, LitPoint& point);
+/// The surfaces that rays which[0] … which[count − 1] hit, as points to be lit, and their albedo.
+/// At most kLightBatch.
+void surfacesAt(const LightScene& scene, const Ray* rays, const RayHit* hits, const int* which,
+                int count, LitPoint* points, Float3* albedos);
 
 /// Light that needs no ray: the sun and point lights without shadows.
 Float3 plainLight(const Lighting& lighting, const LitPoint& point);
