@@ -11,7 +11,7 @@ namespace still::inspect {
 struct Film {
     Scene scene{};
     std::vector<WindingBits> windings{};  ///< of the scene's meshes
-    bool noisy = false;      ///< frames of a film that stands differ: stochastic transparency
+    bool noisy = false;      ///< frames of a film that stands differ: stochastic transparency, sampled light
     CameraFile recording{};  ///< one entry per drawn frame
 
     int lastFrame() const { return int(recording.frames.size()) - 1; }

@@ -19,6 +19,8 @@ enum class View : uint8_t {
     normal,         ///< of that sample
     id,             ///< of that sample
     motion,         ///< of that sample
+    light,          ///< sampled light as it is: one random sample a pixel
+    denoised,       ///< the same, clean
     history,        ///< the past as it is kept
     reprojected,    ///< the past alone, at this frame's places
     clipped,        ///< the same, held against the neighbourhood

@@ -4,13 +4,24 @@
 
 namespace still::inspect {
 
+constexpr std::string_view kNoisy = ":denoise=off";
+
 bool operator==(const Mode& a, const Mode& b) {
     return a.anti_aliasing == b.anti_aliasing &&
            (a.anti_aliasing != AntiAliasing::taa || a.policy == b.policy) &&
-           (a.anti_aliasing != AntiAliasing::ssaa || a.ssaa_samples == b.ssaa_samples);
+           (a.anti_aliasing == AntiAliasing::ssaa ? a.ssaa_samples == b.ssaa_samples
+                                                  : a.denoise == b.denoise);
 }
 
 std::optional<Mode> modeNamed(std::string_view name) {
+    if (name.ends_with(kNoisy)) {
+        std::optional<Mode> mode = modeNamed(name.substr(0, name.size() - kNoisy.size()));
+        if (!mode || mode->anti_aliasing == AntiAliasing::ssaa) {
+            return std::nullopt;
+        }
+        mode->denoise = Denoise::off;
+        return mode;
+    }
     if (name == "raw") {
         return Mode{.anti_aliasing = AntiAliasing::none};
     }
@@ -26,6 +37,11 @@ std::optional<Mode> modeNamed(std::string_view name) {
 }
 
 std::string nameOf(const Mode& mode) {
+    if (mode.denoise == Denoise::off && mode.anti_aliasing != AntiAliasing::ssaa) {
+        Mode denoised = mode;
+        denoised.denoise = Denoise::svgf;
+        return nameOf(denoised) + std::string(kNoisy);
+    }
     switch (mode.anti_aliasing) {
         case AntiAliasing::none:
             return "raw";

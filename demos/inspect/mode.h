@@ -13,14 +13,16 @@ namespace still::inspect {
 
 struct Mode {
     AntiAliasing anti_aliasing = AntiAliasing::taa;
-    TaaPolicy policy{};     ///< with AntiAliasing::taa
-    int ssaa_samples = 64;  ///< with AntiAliasing::ssaa: 1 … 65536
+    TaaPolicy policy{};               ///< with AntiAliasing::taa
+    int ssaa_samples = 64;            ///< with AntiAliasing::ssaa: 1 … 65536
+    Denoise denoise = Denoise::svgf;  ///< not with AntiAliasing::ssaa
 
     /// Equal pictures: what the way of anti-aliasing does not use is not compared.
     friend bool operator==(const Mode& a, const Mode& b);
 };
 
-/// "raw", "fxaa", "ssaa:N", or a preset's name; nothing for any other text.
+/// "raw", "fxaa", "ssaa:N", or a preset's name, the latter also with ":denoise=off" behind it;
+/// nothing for any other text.
 std::optional<Mode> modeNamed(std::string_view name);
 
 /// The name that modeNamed() takes. A policy that is no preset's is "custom".

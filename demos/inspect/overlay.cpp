@@ -55,7 +55,7 @@ const GBuffer& Overlay::centreSamples(int width, int height) {
         const bool same = probed_frame_ >= 0 && film_.stands(probed_frame_) && film_.stands(last) &&
                           film_.sameView(probed_frame_, last);
         if (!same) {
-            probe_.draw(last, width, height, {.planes = {.normal = false, .motion = true}});
+            probe_.draw(last, width, height, {.planes = {.normal = false, .motion = true}, .lit = false});
             depth_frame_ = -1;
         }
         probed_frame_ = last;

@@ -29,6 +29,7 @@ FrameSettings Pane::settings() const {
     settings.anti_aliasing = mode_.anti_aliasing;
     settings.policy = mode_.policy;
     settings.ssaa_samples = mode_.ssaa_samples;
+    settings.denoise = mode_.denoise;
     return settings;
 }
 

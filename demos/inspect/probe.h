@@ -2,8 +2,11 @@
 // Draws single samples of a film's frames, beside the frame loops and without changing them: for
 // views of the G-buffer, for overlays, and for supersampled pictures that grow.
 
+#include <memory>
+
 #include "demos/inspect/film.h"
 #include "engine/jitter.h"
+#include "rasterizer/light_sampler.h"
 #include "rasterizer/rasterizer.h"
 
 namespace still::inspect {
@@ -14,6 +17,7 @@ struct ProbeSample {
     PlaneSet planes{};
     int mip_bias_fx8 = 0;
     bool camera_motion_only = false;
+    bool lit = true;  ///< with the light that is sampled, of scenes that have some
 };
 
 class Probe {
@@ -21,6 +25,8 @@ class Probe {
     Probe(const Film& film, SimdTarget simd, Workers& workers)
         : film_(film), simd_(simd), workers_(workers) {}
 
+    /// The film has another scene.
+    void forgetScene() { sampler_.reset(); }
     /// The G-buffer stays until the next call.
     const GBuffer& draw(int frame, int width, int height, const ProbeSample& sample);
     const GBuffer& gbuffer() const { return gbuffer_; }
@@ -32,7 +38,11 @@ class Probe {
     const Film& film_;
     SimdTarget simd_;
     Workers& workers_;
+    void addLight(const DrawList& list, const FrameView& view);
+
     Rasterizer rasterizer_;
+    std::unique_ptr<LightSampler> sampler_;  ///< made when light is sampled
+    LightImages light_;
     GBuffer gbuffer_;
     Image<uint16_t> overdraw_;
 };

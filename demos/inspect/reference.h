@@ -27,6 +27,8 @@ class Reference {
     Reference(const Film& film, SimdTarget simd, Workers& workers)
         : probe_(film, simd, workers), workers_(workers) {}
 
+    /// The film has another scene.
+    void forgetScene() { probe_.forgetScene(); }
     /// The next picture is of this frame and size, and has no samples yet.
     void begin(int frame, int width, int height, int samples);
     /// Adds up to `count` samples; does nothing when the picture is complete.

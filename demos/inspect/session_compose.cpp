@@ -42,6 +42,10 @@ void Session::State::paintView(Slot& slot) {
             return paintId(pane.sample(), out, workers);
         case View::motion:
             return paintMotion(pane.sample(), out, workers);
+        case View::light:
+            return paintLight(result.light, table, out, workers);
+        case View::denoised:
+            return paintLight(result.denoised, table, out, workers);
         case View::history:
             return pane.paintStory(StoryPlane::history, out);
         case View::reprojected:

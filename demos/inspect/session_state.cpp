@@ -12,9 +12,11 @@ namespace still::inspect {
 namespace {
 
 bool isNoisy(const Scene& scene) {
-    return std::any_of(
-        scene.materials.begin(), scene.materials.end(),
-        [](const Material& material) { return material.alpha_mode == AlphaMode::stochastic; });
+    const auto stochastic = [](const Material& material) {
+        return material.alpha_mode == AlphaMode::stochastic;
+    };
+    return scene.lights.sampled() ||
+           std::any_of(scene.materials.begin(), scene.materials.end(), stochastic);
 }
 
 std::vector<WindingBits> windingsOf(const Scene& scene, Workers& workers) {
@@ -47,6 +49,7 @@ void Session::State::setScene(Scene scene, bool keep_camera) {
     film.windings = windingsOf(film.scene, workers);
     film.noisy = isNoisy(film.scene);
     overlay.forgetScene();
+    reference.forgetScene();
     director.begin(film.scene, aspect(), keep_camera);
 }
 

@@ -162,6 +162,22 @@ void paintMotion(const GBuffer& g, ImageView<Rgb8> out, Workers& workers) {
     paintRows(out, workers, [&](int x, int y) { return motionColour(g.motion.at(x, y)); });
 }
 
+void paintLight(const LightPlanes& light, const OutputTable& table, ImageView<Rgb8> out,
+                Workers& workers) {
+    paintRows(out, workers, [&](int x, int y) {
+        if (light.direct.red.empty()) {
+            return kNothing;
+        }
+        const auto at = [&](ImageView<const uint16_t> a, ImageView<const uint16_t> b) {
+            const int px = x * a.width / out.width, py = y * a.height / out.height;
+            return table[uint16_t(std::min(a.at(px, py) + b.at(px, py), 65535))];
+        };
+        return Rgb8{at(light.direct.red, light.indirect.red),
+                    at(light.direct.green, light.indirect.green),
+                    at(light.direct.blue, light.indirect.blue)};
+    });
+}
+
 /// The value of a plane that may be smaller than the picture.
 static int valueUnder(ImageView<const uint8_t> plane, ImageView<Rgb8> out, int x, int y) {
     return plane.at(x * plane.width / out.width, y * plane.height / out.height);

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "postfx/denoise.h"
 #include "postfx/encode.h"
 #include "postfx/story.h"
 #include "rasterizer/gbuffer.h"
@@ -17,6 +18,10 @@ void paintDepth(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintNormal(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintId(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
 void paintMotion(const GBuffer& gbuffer, ImageView<Rgb8> out, Workers& workers);
+/// Direct and indirect light together, as white surfaces show them; black where planes are empty.
+/// They may be smaller than the picture.
+void paintLight(const LightPlanes& light, const OutputTable& table, ImageView<Rgb8> out,
+                Workers& workers);
 /// Black is 0, or a plane that is empty; white is `full`. Counts by their square root, so that few
 /// samples are told apart.
 void paintCount(ImageView<const uint8_t> count, int full, ImageView<Rgb8> out, Workers& workers);

@@ -113,6 +113,11 @@ void paneSection(Desk& desk, int pane) {
     PaneSettings& settings = session.pane(pane);
     const inspect::PaneReport& report = session.report(pane);
     modeOf(settings.mode);
+    if (session.scene().lights.sampled() && settings.mode.anti_aliasing != AntiAliasing::ssaa) {
+        bool denoises = settings.mode.denoise == Denoise::svgf;
+        ImGui::Checkbox("denoise", &denoises);
+        settings.mode.denoise = denoises ? Denoise::svgf : Denoise::off;
+    }
     std::vector<std::string> views;
     for (const inspect::ViewInfo& info : inspect::allViews()) {
         views.emplace_back(info.name);

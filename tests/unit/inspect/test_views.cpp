@@ -9,6 +9,7 @@
 
 #include "demos/inspect/pane.h"
 #include "demos/inspect/views.h"
+#include "postfx/metrics.h"
 #include "tests/unit/inspect/session_tools.h"
 
 using namespace still;
@@ -75,6 +76,10 @@ TEST_CASE("views: every view has a name of its own and can be drawn with every m
     }
     CHECK_FALSE(modeNamed("nonsense").has_value());
     CHECK_FALSE(modeNamed("ssaa:0").has_value());
+    CHECK_FALSE(modeNamed("ssaa:4:denoise=off").has_value());
+    CHECK(modeCalled("fast:denoise=off").denoise == Denoise::off);
+    CHECK(nameOf(modeCalled("fast:denoise=off")) == "fast:denoise=off");
+    CHECK_FALSE(modeCalled("fast:denoise=off") == modeCalled("fast"));
     Mode own = modeCalled("fast");
     own.policy.ring = 5;
     CHECK(nameOf(own) == "custom");
@@ -109,6 +114,50 @@ TEST_CASE("views: a pane's sample is the one that its frame loop resolved", "[un
             CHECK(samePlanes(found.normal, expected.normal));
             CHECK(samePlanes(found.motion, expected.motion));
         }
+    }
+}
+
+TEST_CASE("views: sampled light is noisy, denoised it is nearer to what many samples show",
+          "[unit][views]") {
+    Workers workers(2);
+    Session session(sceneNamed("cornell"), testSettings(), workers);
+    const auto shown = [&](const std::string& mode, View view) {
+        session.pane(0) = {modeCalled(mode), view};
+        drawToRest(session, 40);
+        return copyOf(session.draw().image);
+    };
+    const Image<Rgb8> many = shown("ssaa:256", View::picture);
+    const auto distanceTo = [&](const Image<Rgb8>& picture) {
+        return pixelError(picture.view(), many.view()).squared_sum;
+    };
+    const uint64_t noisy = distanceTo(shown("raw:denoise=off", View::picture));
+    const uint64_t clean = distanceTo(shown("still", View::picture));
+    CHECK(clean * 10 < noisy);
+    const Image<Rgb8> light = shown("still", View::light);
+    const Image<Rgb8> denoised = shown("still", View::denoised);
+    CHECK(pixelError(light.view(), denoised.view()).squared_sum > 0);
+    // The left wall is red, the light on it is not.
+    const Rgb8 wall = shown("still", View::picture).at(35, 36), on_wall = denoised.at(35, 36);
+    CHECK(wall.r > 3 * wall.g);
+    CHECK(on_wall.g * 3 > on_wall.r);
+    CHECK(on_wall.g > 30);
+    CHECK(shown("raw:denoise=off", View::denoised).at(35, 36) == Rgb8{});
+    session.setScene(sceneNamed("cubes"), false);
+    CHECK(shown("still", View::light).at(35, 36) == Rgb8{});
+}
+
+TEST_CASE("views: ssaa:N of sampled light has the bytes of the frame loop", "[unit][views]") {
+    Workers workers(2);
+    for (const char* name : {"cornell", "contact"}) {
+        const Scene scene = sceneNamed(name);
+        Session session(scene, testSettings(), workers);
+        session.pane(0).mode = modeCalled("ssaa:32");
+        drawToRest(session, 64);
+        const CameraFile recording = session.recording(0);
+        FrameSettings settings = session.paneSettings(0);
+        settings.camera.file = &recording;
+        FrameLoop loop(scene, settings, workers);
+        CHECK(session.hash(0) == hashPlane(loop.render(int(recording.frames.size()) - 1).output));
     }
 }
 
