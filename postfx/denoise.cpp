@@ -25,6 +25,7 @@ struct PastImages {
     std::array<Image<float>, kChannels> light;
     std::array<Image<float>, kParts> square;
     std::array<Image<uint8_t>, kParts> count, age;
+    Image<uint8_t> still;
     std::array<Image<float>, 3> normal;
     Image<uint16_t> surface, depth;
 
@@ -39,6 +40,7 @@ struct PastImages {
         all(count);
         all(age);
         all(normal);
+        still.resize(width, height);
         surface.resize(width, height);
         depth.resize(width, height);
     }
@@ -55,6 +57,7 @@ struct PastImages {
         for (size_t c = 0; c < 3; ++c) {
             past.normal[c] = normal[c].view().data;
         }
+        past.still = still.view().data;
         past.surface = surface.view().data;
         past.depth = depth.view().data;
         return past;

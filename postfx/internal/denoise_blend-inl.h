@@ -256,7 +256,17 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
     const MF has_past = hn::Gt(found.weight, zero);
     const VF longest =
         hn::IfThenElse(exact, set(float(kLongest - 1)), set(float(kLongestMoving - 1)));
-    VF light_age = set(255.0f);
+    VI mx, my;
+    loadMotion(job.motion + at, mx, my);
+    const MF rests =
+        job.has_past ? hn::RebindMask(d, hn::Eq(hn::Or(mx, my), setInt(0))) : noLanes();
+    const VF most = set(255.0f);
+    const VF still = job.has_past
+                         ? hn::IfThenElseZero(
+                               rests, hn::Min(hn::Add(loadByte(job.before.still + at), one), most))
+                         : zero;
+    const MF young = hn::Eq(still, set(float(kYoungFrames)));
+    VF light_age = most;
     for (int p = 0; p < kParts; ++p) {
         const VF even = hn::Div(one, hn::Add(hn::Min(found.count[p], longest), one));
         const VF grown = hn::Add(even, hn::Mul(hn::Sub(one, even), change.unsure[p]));
@@ -280,14 +290,15 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
         const VF bound = hn::IfThenElse(
             hn::Gt(drift, zero),
             hn::Min(set(255.0f), hn::Div(set(kAgeDrift), hn::Max(drift, set(1e-9f)))), set(255.0f));
-        const MF grown_up = hn::And(exact, hn::Eq(found.count[p], set(float(kYoungFrames - 1))));
+        const MF grown_up = hn::And(young, hn::Le(found.count[p], set(float(kYoungFrames))));
         const VF oldest = hn::IfThenElse(grown_up, set(float(kYoungKept)), set(255.0f));
         const VF older = hn::Min(hn::Add(found.age[p], one), oldest);
         const VF age = hn::IfThenElse(has_past, hn::Min(older, bound), set(255.0f));
         storeByte(hn::IfThenElseZero(surface, age), job.now.age[p] + at);
         light_age = hn::Min(light_age, hn::Floor(hn::Add(age, set(0.5f))));
     }
-    storeByte(hn::IfThenElse(surface, light_age, set(255.0f)), job.light_age + at);
+    storeByte(hn::IfThenElse(surface, light_age, most), job.light_age + at);
+    storeByte(still, job.now.still + at);
     if (any(apart)) {
         alignas(64) float asks[kMostLanes];
         hn::Store(hn::IfThenElseZero(apart, one), d, asks);

@@ -21,6 +21,7 @@ struct Past {
     float* square[kParts] = {};    ///< mean of their squared luminances
     uint8_t* count[kParts] = {};   ///< so many samples the means are worth
     uint8_t* age[kParts] = {};     ///< frames since light changed, 255 = long
+    uint8_t* still = nullptr;      ///< frames for which the pixel has stood still, 255 = long
     float* normal[3] = {};         ///< unit length
     uint16_t* surface = nullptr;   ///< 0: background
     uint16_t* depth = nullptr;     ///< logDepth16

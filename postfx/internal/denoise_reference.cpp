@@ -106,7 +106,14 @@ Found findPast(const Job& job, int x, int y) {
     return found;
 }
 
+/// For how long the pixel has stood still.
+int stillFor(const Job& job, ptrdiff_t at) {
+    const bool rests = job.has_past && job.motion[at] == Motion{};
+    return rests ? std::min(job.before.still[at] + 1, 255) : 0;
+}
+
 void clear(const Job& job, ptrdiff_t at) {
+    job.now.still[at] = uint8_t(stillFor(job, at));
     for (int c = 0; c < kChannels; ++c) {
         job.now.light[c][at] = 0;
         job.first.light[c][at] = 0;
@@ -129,6 +136,7 @@ void blendPixel(const Job& job, int x, int y) noexcept {
         return;
     }
     const Found found = findPast(job, x, y);
+    const int still = stillFor(job, at);
     int light_age = 255;
     for (int p = 0; p < kParts; ++p) {
         const BlockChange change = changeAt(job, p, x, y);
@@ -150,13 +158,14 @@ void blendPixel(const Job& job, int x, int y) noexcept {
         job.now.count[p][at] = uint8_t(int(1.0f / share + 0.5f));
         const float drift = std::max(std::abs(change.ratio - 1.0f), change.unsure);
         const float bound = drift > 0 ? std::min(255.0f, kAgeDrift / drift) : 255.0f;
-        const bool grown_up = found.exact && found.count[p] == float(kYoungFrames - 1);
+        const bool grown_up = still == kYoungFrames && found.count[p] <= float(kYoungFrames);
         const float older = std::min(found.age[p] + 1, grown_up ? float(kYoungKept) : 255.0f);
         const float age = std::min(older, bound);
         job.now.age[p][at] = uint8_t(int((found.weight > 0 ? age : 255.0f) + 0.5f));
         light_age = std::min(light_age, int(job.now.age[p][at]));
     }
     job.light_age[at] = uint8_t(light_age);
+    job.now.still[at] = uint8_t(still);
 }
 
 namespace {

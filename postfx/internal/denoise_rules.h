@@ -26,8 +26,8 @@ constexpr int kLongest = 255;
 constexpr int kLongestMoving = 32;
 /// The first so many frames are still noisy: TAA forgets its sums of them as soon as they are over,
 /// and all but so many of them.
-constexpr int kYoungFrames = 16;
-constexpr int kYoungKept = 8;
+constexpr int kYoungFrames = 8;
+constexpr int kYoungKept = 5;
 /// Before so many samples variance comes from the surroundings.
 constexpr int kShort = 4;
 /// … of so many pixels on each side whose logDepth16 differs by at most this.
