@@ -3,9 +3,11 @@
 
 #include "postfx/denoise.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <utility>
+#include <vector>
 
 #include "postfx/internal/denoise_kernels.h"
 #include "postfx/internal/denoise_rules.h"
@@ -123,6 +125,72 @@ BlockChange changeOf(ImageView<const uint16_t> before, ImageView<const uint16_t>
     return {ratio, std::min(1.0f, kUnsureGain * off / float(sum_most))};
 }
 
+/// The parts of a tile's light that are to be filtered, a bit for each.
+int noisyParts(const FilterPlanes& planes, ptrdiff_t stride, const TileRect& tile) {
+    int parts = 0;
+    for (int p = 0; p < kParts; ++p) {
+        bool all_quiet = true;
+        for (int y = tile.y0; y < tile.y1 && all_quiet; ++y) {
+            const ptrdiff_t at = y * stride + tile.x0;
+            const uint16_t* red = planes.light[3 * p] + at;
+            const uint16_t* green = planes.light[3 * p + 1] + at;
+            const uint16_t* blue = planes.light[3 * p + 2] + at;
+            const float* variance = planes.variance[p] + at;
+            for (int x = 0; x < tile.x1 - tile.x0; ++x) {
+                all_quiet &= denoising::quiet(
+                    variance[x],
+                    denoising::luminance(float(red[x]), float(green[x]), float(blue[x])));
+            }
+        }
+        parts |= all_quiet ? 0 : 1 << p;
+    }
+    return parts;
+}
+
+/// The parts that are not filtered, as they are.
+void copyParts(const FilterPlanes& in, const FilterPlanes& out, int parts, ptrdiff_t stride,
+               const TileRect& tile) {
+    const int width = tile.x1 - tile.x0;
+    for (int p = 0; p < kParts; ++p) {
+        for (int y = tile.y0; y < tile.y1 && !denoising::filters(parts, p); ++y) {
+            const ptrdiff_t at = y * stride + tile.x0;
+            std::copy_n(in.variance[p] + at, width, out.variance[p] + at);
+            for (int c = 3 * p; c < 3 * p + 3; ++c) {
+                std::copy_n(in.light[c] + at, width, out.light[c] + at);
+            }
+        }
+    }
+}
+
+/// The least of the 3×3 around each pixel: what owns a pixel may be a neighbour's surface.
+void leastAround(ImageView<const uint8_t> in, ImageView<uint8_t> out, const TileRect& tile) {
+    uint8_t least[kTileSize + 2];
+    const int x0 = std::max(tile.x0 - 1, 0), x1 = std::min(tile.x1 + 1, in.width);
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const uint8_t* rows[3] = {in.row(std::max(y - 1, 0)), in.row(y),
+                                  in.row(std::min(y + 1, in.height - 1))};
+        for (int x = x0; x < x1; ++x) {
+            least[x - x0] = std::min(std::min(rows[0][x], rows[1][x]), rows[2][x]);
+        }
+        uint8_t* to = out.row(y);
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const int left = std::max(x - 1, x0) - x0, right = std::min(x + 1, x1 - 1) - x0;
+            to[x] = std::min(std::min(least[left], least[x - x0]), least[right]);
+        }
+    }
+}
+
+/// Whether light has not been as it is for long somewhere in the tile.
+bool isYoung(ImageView<const uint8_t> age, const TileRect& tile) {
+    uint8_t least = 255;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            least = std::min(least, age.row(y)[x]);
+        }
+    }
+    return least < 255;
+}
+
 }  // namespace
 
 struct Denoiser::State {
@@ -134,7 +202,10 @@ struct Denoiser::State {
     std::array<FilterImages, 2> filtered;
     std::array<Image<float>, 2> step;
     std::array<std::vector<BlockChange>, kParts> change;
-    Image<uint8_t> light_age;
+    std::vector<int> noisy_parts;         ///< of each tile
+    Image<uint8_t> light_age, least_age;  ///< of each pixel; of the 3×3 around it
+    std::vector<uint8_t> young;           ///< tiles with pixels of some age
+    bool any_young = false;
 
     TileRect rectOf(int tile) const {
         const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
@@ -144,13 +215,14 @@ struct Denoiser::State {
     void eachTile(Workers& workers, Kernel&& kernel) {
         workers.parallelFor(tiles, 1, [&](int begin, int end, int) {
             for (int tile = begin; tile < end; ++tile) {
-                kernel(rectOf(tile));
+                kernel(tile, rectOf(tile));
             }
         });
     }
     void resize(int new_width, int new_height);
     void noteChange(const LightChange& seen, Workers& workers);
     Job makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, bool changed);
+    void filter(const Job& job, const denoising::Kernels& kernels, Workers& workers);
 };
 
 void Denoiser::State::resize(int new_width, int new_height) {
@@ -171,6 +243,9 @@ void Denoiser::State::resize(int new_width, int new_height) {
         image.resize(width, height);
     }
     light_age.resize(width, height);
+    least_age.resize(width, height);
+    noisy_parts.resize(size_t(tiles));
+    young.resize(size_t(tiles));
     has_past = false;
 }
 
@@ -219,6 +294,23 @@ Job Denoiser::State::makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, b
     return job;
 }
 
+/// A tile without noise is copied once: then it is the same in both sets of planes.
+void Denoiser::State::filter(const Job& job, const denoising::Kernels& kernels, Workers& workers) {
+    for (int pass = 0; pass < denoising::kPasses; ++pass) {
+        const FilterPlanes in = filtered[size_t(pass % 2)].pointers();
+        const FilterPlanes out = filtered[size_t(1 - pass % 2)].pointers();
+        eachTile(workers, [&](int tile, const TileRect& rect) {
+            const int parts = noisy_parts[size_t(tile)];
+            if (pass == 0) {
+                copyParts(in, out, parts, job.stride, rect);
+            }
+            if (parts != 0) {
+                kernels.filter(job, in, out, pass, parts, rect);
+            }
+        });
+    }
+}
+
 Denoiser::Denoiser() : state_(std::make_unique<State>()) {}
 Denoiser::~Denoiser() = default;
 
@@ -235,15 +327,20 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
     s.cursor = 1 - s.cursor;
     const Job job = s.makeJob(gbuffer, noisy, changed);
     const denoising::Kernels kernels = denoising::kernels(simd);
-    s.eachTile(workers, [&](const TileRect& tile) { kernels.guides(job, tile); });
-    s.eachTile(workers, [&](const TileRect& tile) { kernels.blend(job, tile); });
-    s.eachTile(workers, [&](const TileRect& tile) { kernels.variance(job, tile); });
-    for (int pass = 0; pass < denoising::kPasses; ++pass) {
-        const FilterPlanes in = s.filtered[size_t(pass % 2)].pointers();
-        const FilterPlanes out = s.filtered[size_t(1 - pass % 2)].pointers();
-        s.eachTile(workers,
-                   [&](const TileRect& tile) { kernels.filter(job, in, out, pass, 3, tile); });
-    }
+    s.eachTile(workers, [&](int, const TileRect& rect) { kernels.guides(job, rect); });
+    s.eachTile(workers, [&](int tile, const TileRect& rect) {
+        kernels.blend(job, rect);
+        s.young[size_t(tile)] = isYoung(s.light_age.view(), rect) ? 1 : 0;
+    });
+    s.any_young = std::find(s.young.begin(), s.young.end(), 1) != s.young.end();
+    s.eachTile(workers, [&](int tile, const TileRect& rect) {
+        kernels.variance(job, rect);
+        s.noisy_parts[size_t(tile)] = noisyParts(job.first, job.stride, rect);
+        if (s.any_young) {
+            leastAround(s.light_age.view(), s.least_age.view(), rect);
+        }
+    });
+    s.filter(job, kernels, workers);
     s.has_past = true;
 }
 
@@ -254,7 +351,8 @@ LightPlanes Denoiser::light() const {
 }
 
 ImageView<const uint8_t> Denoiser::lightAge() const {
-    return std::as_const(state_->light_age).view();
+    const State& s = *state_;
+    return s.any_young ? s.least_age.view() : ImageView<const uint8_t>();
 }
 
 void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint8_t> wanted,

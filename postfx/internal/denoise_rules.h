@@ -62,6 +62,12 @@ inline float fallOff(float x) {
     return rest * rest;
 }
 
+/// Variance that no one sees: less than half a step of the planes, or than 1/1024 of the light.
+inline bool quiet(float variance, float luminance) {
+    const float span = luminance * (1.0f / 1024);
+    return variance <= 0.25f + span * span;
+}
+
 /// Passes of the filter; pass k takes every 2^k-th pixel.
 constexpr int kPasses = 5;
 /// Of the filter's 3 × 3 window, each axis; of its centre.
