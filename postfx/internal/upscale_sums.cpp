@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 
 namespace still::upscale {
 namespace {
@@ -15,8 +16,8 @@ constexpr int kMostOutputs = kMaxUpscale * kTileSize + kMaxUpscale;
 
 /// An output pixel of a row that gets a sample, and the frame's pixel that it comes from.
 struct Hit {
-    int16_t output = 0;  ///< from the tile's first
-    int16_t pixel = 0;   ///< from the frame's pixel left of the tile
+    int32_t output = 0;  ///< from the tile's first
+    int32_t pixel = 0;   ///< from the frame's pixel left of the tile
 };
 
 /// What an axis' output pixels of a tile have to do with the frame.
@@ -35,50 +36,77 @@ struct Span {
         for (int pixel = std::max(origin, 0); pixel < std::min(tile_end + 1, axis.frame); ++pixel) {
             const int output = axis.outputOf(pixel, jitter_fx8) - first;
             if (output >= 0 && output < count) {
-                hits[size_t(hit_count++)] = {int16_t(output), int16_t(pixel - origin)};
+                hits[size_t(hit_count++)] = {output, pixel - origin};
             }
         }
     }
 };
 
-/// Divides by counts that seldom differ from the last one: exact for sums of up to 4096 samples.
-class Means {
+/// Divides sums of up to 4096 samples by their number, rounded half up, exactly: (2^28 + 2^11) ·
+/// 2^12 < 2^44, so that what the reciprocal is too large by never reaches a whole one; and
+/// (2^28 + 2^11) · 2^33 < 2^64.
+class Mean {
   public:
-    uint16_t of(uint32_t sum, uint32_t count) {
-        if (count != count_) {
-            count_ = count;
-            reciprocal_ = (uint64_t{1} << kShift) / count + 1;
-        }
-        return uint16_t(((uint64_t{sum} + count / 2) * reciprocal_) >> kShift);
+    explicit Mean(uint32_t count)
+        : half_(count / 2), reciprocal_((uint64_t{1} << kShift) / count + 1) {}
+    uint16_t of(uint32_t sum) const {
+        return uint16_t((uint64_t{sum + half_} * reciprocal_) >> kShift);
     }
 
   private:
-    // (2^28 + 2^11) · 2^12 < 2^44: what the reciprocal is too large by never reaches a whole one;
-    // and (2^28 + 2^11) · 2^33 < 2^64.
     static constexpr int kShift = 44;
-    uint32_t count_ = 1;
-    uint64_t reciprocal_ = (uint64_t{1} << kShift) + 1;
+    uint32_t half_;
+    uint64_t reciprocal_;
 };
 
 struct Tile {
     const Job& job;
     Span columns;
-    Means means;
     SumsResult result;
 
-    void addSample(ptrdiff_t at, ptrdiff_t from) {
-        const uint32_t count = job.sums.count[at] + 1u;
-        job.sums.count[at] = uint16_t(count);
-        const bool first = count == 1;
+    /// Adds samples to the pixels of `hits`, all of which then have `count`. Channel after channel:
+    /// few streams.
+    void addSamples(ptrdiff_t at, ptrdiff_t from, std::span<const Hit> hits, uint32_t count) {
+        const bool shows = int(count) >= job.settled;
+        const Mean mean(count);
         for (int c = 0; c < 3; ++c) {
-            uint32_t& sum = job.sums.colour[c][at];
-            sum = (first ? 0 : sum) + job.frame.now.colour[c][from];
-            if (int(count) >= job.settled) {
-                job.shown[c][at] = means.of(sum, count);
+            const uint16_t* samples = job.frame.now.colour[c] + from;
+            uint32_t* sums = job.sums.colour[c] + at;
+            for (const Hit& hit : hits) {
+                sums[hit.output] = (count == 1 ? 0 : sums[hit.output]) + samples[hit.pixel];
+            }
+            uint16_t* shown = job.shown[c] + at;
+            for (size_t i = 0; shows && i < hits.size(); ++i) {
+                shown[hits[i].output] = mean.of(sums[hits[i].output]);
             }
         }
-        if (int(count) >= job.settled) {
-            job.shown_count[at] = uint8_t(std::min(count, 255u));
+        for (const Hit& hit : hits) {
+            job.sums.count[at + hit.output] = uint16_t(count);
+        }
+        for (size_t i = 0; shows && i < hits.size(); ++i) {
+            job.shown_count[at + hits[i].output] = uint8_t(std::min(count, 255u));
+        }
+        result.changed = true;
+    }
+
+    /// Adds a row's samples to pixels that are not full; `moved`: but not to these, or null.
+    void addRow(ptrdiff_t at, ptrdiff_t from, const bool* moved) {
+        const std::span hits(columns.hits.data(), size_t(columns.hit_count));
+        const uint16_t *counts = job.sums.count + at, *frames = job.sums.frames + at;
+        const auto same = [&](const Hit& a, const Hit& b) {
+            return counts[a.output] == counts[b.output] && frames[a.output] == frames[b.output];
+        };
+        // Nearly always all pixels of a row have been treated alike.
+        for (size_t first = 0; first < hits.size();) {
+            size_t end = first + 1;
+            while (end < hits.size() && moved == nullptr && same(hits[first], hits[end])) {
+                ++end;
+            }
+            const int output = hits[first].output;
+            if (frames[output] < job.sample_cap && (moved == nullptr || !moved[output])) {
+                addSamples(at, from, hits.subspan(first, end - first), counts[output] + 1u);
+            }
+            first = end;
         }
     }
 
@@ -92,13 +120,7 @@ struct Tile {
     void growRow(ptrdiff_t at, ptrdiff_t from, bool has_samples) {
         uint16_t* frames = job.sums.frames + at;
         if (has_samples) {
-            for (int i = 0; i < columns.hit_count; ++i) {
-                const Hit hit = columns.hits[size_t(i)];
-                if (frames[hit.output] < job.sample_cap) {
-                    addSample(at + hit.output, from + hit.pixel);
-                    result.changed = true;
-                }
-            }
+            addRow(at, from, nullptr);
         }
         for (int i = 0; i < columns.count; ++i) {
             frames[i] = uint16_t(frames[i] + (frames[i] < job.sample_cap ? 1 : 0));
@@ -119,12 +141,8 @@ struct Tile {
             }
             moved[size_t(i)] = disturbance == taa::kMoved;
         }
-        for (int i = 0; has_samples && i < columns.hit_count; ++i) {
-            const Hit hit = columns.hits[size_t(i)];
-            if (!moved[size_t(hit.output)] && job.sums.frames[at + hit.output] < job.sample_cap) {
-                addSample(at + hit.output, from + hit.pixel);
-                result.changed = true;
-            }
+        if (has_samples) {
+            addRow(at, from, moved.data());
         }
         for (int i = 0; i < columns.count; ++i) {
             uint16_t& frames = job.sums.frames[at + i];
@@ -153,7 +171,7 @@ SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillness stilln
     }
     const TileRect out = outputRect(job, tile);
     const taa::SlotOut& record = job.frame.record;
-    Tile sums{job, Span(job.x, out.x0, out.x1, tile.x0, tile.x1, record.jitter_x_fx8), {}, {}};
+    Tile sums{job, Span(job.x, out.x0, out.x1, tile.x0, tile.x1, record.jitter_x_fx8), {}};
     const Span rows(job.y, out.y0, out.y1, tile.y0, tile.y1, record.jitter_y_fx8);
     std::array<uint8_t, kTileSize> disturbed;
     int next_hit = 0, tested = -1;
