@@ -6,7 +6,9 @@
 
 #include "rasterizer/fixed.h"
 #include "rasterizer/internal/light_setup.h"
+#include "rasterizer/internal/screen_occlusion.h"
 #include "rasterizer/internal/shading_constants.h"
+#include "rasterizer/internal/sun_map.h"
 
 namespace still {
 
@@ -83,6 +85,8 @@ struct LightSampler::State {
 
     LightScene scene;
     TreeKeeper trees;
+    std::unique_ptr<SunMap> sun_map;
+    ScreenOcclusion screen;
     PixelNumbers numbers;
     const FrameView* view = nullptr;
     std::vector<Scratch> scratch;
@@ -117,6 +121,13 @@ void LightSampler::setUp(const DrawList& list, const FrameView& view, SimdTarget
     s.scene.trace = traceFor(simd);
     if (traces(list.lighting.sampled)) {
         s.trees.update(list, s.scene.tree, workers);
+    }
+    if (list.lighting.sampled.sun_shadow == SunShadow::mapped) {
+        if (s.sun_map == nullptr) {
+            s.sun_map = std::make_unique<SunMap>();
+        }
+        s.sun_map->update(list, std::max(view.width, view.height), simd, workers);
+        s.scene.sun_map = s.sun_map.get();
     }
     s.scratch.resize(size_t(workers.threads()));
 }
@@ -208,9 +219,13 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
     if (s.batch.count < (x1 - x0) * (y1 - y0)) {
         clearBlock(out, x0, y0, x1, y1, keep);
     }
+    const bool on_screen = scene.list->lighting.sampled.ambient == AmbientLight::screen_occlusion;
     for (int i = 0; i < s.batch.count; ++i) {
         const int x = s.x[i], y = s.y[i];
-        const Rgb16 direct = toFx12(s.batch.direct[i]), indirect = toFx12(s.batch.indirect[i]);
+        const Rgb16 direct = toFx12(s.batch.direct[i]);
+        const Float3 ambient = s.batch.indirect[i];
+        const Rgb16 indirect =
+            toFx12(on_screen ? scale(ambient, screen.openAt(gbuffer, x, y)) : ambient);
         out.direct_red.at(x, y) = direct.r;
         out.direct_green.at(x, y) = direct.g;
         out.direct_blue.at(x, y) = direct.b;
@@ -224,7 +239,8 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
             addTo(gbuffer.blue.at(x, y), specular.z * s.batch.highlight[i].z);
         }
         if (keep) {
-            keepSample(s, i, direct, indirect);
+            // What is seen where nothing else was is not known of another frame.
+            keepSample(s, i, direct, on_screen ? toFx12(ambient) : indirect);
         }
     }
 }
@@ -257,6 +273,10 @@ void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers
             state.kept.assign(rows * size_t(state.blocksAcross()), {});
         }
         state.forgetTiles(wanted);
+    }
+    const SampledLight& sampled = state.scene.list->lighting.sampled;
+    if (sampled.ambient == AmbientLight::screen_occlusion) {
+        state.screen.find(gbuffer, view, sampled.occlusion_distance, state.numbers, workers);
     }
     const PixelRays pixels(view);
     const SampleNumbers sample = numbersOfSample(view.sample);

@@ -29,10 +29,10 @@ void readShadow(const JsonCursor& cursor, SceneLights& lights) {
     cursor.expectKeys({"type", "angle_deg"}, {"notes", "comment"});
     const JsonCursor type = cursor.require("type");
     const std::string name = type.text();
-    if (name != "traced") {
-        type.expected("\"traced\"");
+    if (name != "traced" && name != "map") {
+        type.expected("\"traced\" or \"map\"");
     }
-    lights.sun_shadow = SunShadow::traced;
+    lights.sun_shadow = name == "map" ? SunShadow::mapped : SunShadow::traced;
     if (const auto angle = cursor.find("angle_deg")) {
         lights.sun_angle_deg = angle->number(0, 90);
     }
@@ -42,10 +42,11 @@ void readOcclusion(const JsonCursor& cursor, SceneLights& lights) {
     cursor.expectKeys({"type", "distance"}, {"notes", "comment"});
     const JsonCursor type = cursor.require("type");
     const std::string name = type.text();
-    if (name != "traced") {
-        type.expected("\"traced\"");
+    if (name != "traced" && name != "screen") {
+        type.expected("\"traced\" or \"screen\"");
     }
-    lights.ambient_light = AmbientLight::traced_occlusion;
+    lights.ambient_light =
+        name == "screen" ? AmbientLight::screen_occlusion : AmbientLight::traced_occlusion;
     lights.occlusion_distance = cursor.require("distance").number(kSmallestSize, kMaxCoordinate);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rasterizer/internal/light_scene.h"
+#include "rasterizer/internal/sun_map.h"
 
 namespace still::internal {
 
@@ -53,6 +54,18 @@ struct Shadows {
     void trace(const LightScene& scene, LightBatch& batch, bool together) {
         const auto occluded = together ? scene.trace.occludedTogether : scene.trace.occluded;
         occluded(scene.tree, rays, count, blocked);
+        light(batch);
+    }
+    void lookUp(const SunMap& map, LightBatch& batch) {
+        for (int i = 0; i < count; ++i) {
+            const int p = point[i];
+            blocked[i] =
+                map.blocks(batch.points[p], rays[i], batch.random[kRandomHoles][p]) ? 1 : 0;
+        }
+        light(batch);
+    }
+    /// Adds what nothing is in the way of.
+    void light(LightBatch& batch) const {
         for (int i = 0; i < count; ++i) {
             if (blocked[i] == 0) {
                 batch.direct[point[i]] = batch.direct[point[i]] + diffuse[i];
@@ -217,15 +230,6 @@ void addAreaLights(const LightScene& scene, RandomUse use, bool second_pick,
 
 // ---- indirect light --------------------------------------------------------------------------
 
-/// With a density that goes with the cosine.
-Float3 drawHemisphere(const Float3& normal, const RandomPair& random) {
-    const DiscPoint at = toDisc(random);
-    const float z = std::sqrt(std::max(1.0f - (at.x * at.x + at.y * at.y), 1e-6f));
-    Float3 u, v;
-    acrossOf(normal, u, v);
-    return scale(normal, z) + (scale(u, at.x) + scale(v, at.y));
-}
-
 void addOcclusion(const LightScene& scene, LightBatch& batch) {
     Ray rays[kLightBatch];
     uint8_t blocked[kLightBatch];
@@ -311,6 +315,14 @@ DiscPoint toDisc(const RandomPair& random) {
     return {b * sineOf(angle), b * cosineOf(angle)};  // of π/2 − angle
 }
 
+Float3 drawHemisphere(const Float3& normal, const RandomPair& random) {
+    const DiscPoint at = toDisc(random);
+    const float z = std::sqrt(std::max(1.0f - (at.x * at.x + at.y * at.y), 1e-6f));
+    Float3 u, v;
+    acrossOf(normal, u, v);
+    return scale(normal, z) + (scale(u, at.x) + scale(v, at.y));
+}
+
 void lightBatch(const LightScene& scene, LightBatch& batch, LightBatch& scratch) {
     const SampledLight& sampled = scene.list->lighting.sampled;
     clear(batch);
@@ -318,6 +330,11 @@ void lightBatch(const LightScene& scene, LightBatch& batch, LightBatch& scratch)
         Shadows shadows;
         addSun(scene, kRandomSun, batch, shadows);
         shadows.trace(scene, batch, true);
+    }
+    if (sampled.sun_shadow == SunShadow::mapped) {
+        Shadows shadows;
+        addSun(scene, kRandomSun, batch, shadows);
+        shadows.lookUp(*scene.sun_map, batch);
     }
     if (!scene.lights.empty()) {
         Shadows shadows;
@@ -328,6 +345,9 @@ void lightBatch(const LightScene& scene, LightBatch& batch, LightBatch& scratch)
         addOcclusion(scene, batch);
     } else if (sampled.ambient == AmbientLight::bounce) {
         addBounce(scene, batch, scratch);
+    } else if (sampled.ambient == AmbientLight::screen_occlusion) {
+        const std::array<float, 3>& ambient = scene.list->lighting.ambient;
+        std::fill_n(batch.indirect, batch.count, Float3{ambient[0], ambient[1], ambient[2]});
     }
 }
 

@@ -25,8 +25,11 @@ struct LitSurface {
     Float3 specular{};
 };
 
+class SunMap;
+
 struct LightScene {
     SceneTree tree;
+    const SunMap* sun_map = nullptr;  ///< with SunShadow::mapped
     TraceKernels trace{};
     const DrawList* list = nullptr;
     std::vector<AreaLight> lights;
@@ -58,8 +61,8 @@ struct LightBatch {
     Float3 highlight[kLightBatch];  ///< without the material's specular colour
 };
 
-/// Fills direct, indirect and highlight from points and random numbers. `scratch` is for what the
-/// rays of a bounce hit.
+/// Fills direct, indirect (all of it, with AmbientLight::screen_occlusion) and highlight from
+/// points and random numbers. `scratch` is for what the rays of a bounce hit.
 void lightBatch(const LightScene& scene, LightBatch& batch, LightBatch& scratch);
 
 /// Two unit vectors across a unit vector (Duff et al. 2017).
@@ -70,6 +73,9 @@ struct DiscPoint {
     float x, y;
 };
 DiscPoint toDisc(const RandomPair& random);
+
+/// In the hemisphere, with a density that goes with the cosine.
+Float3 drawHemisphere(const Float3& normal, const RandomPair& random);
 
 // ---- what a ray hits -------------------------------------------------------------------------
 

@@ -25,10 +25,10 @@ static uint32_t usesOf(const SampledLight& sampled) {
     uint32_t uses = 1u << kRandomHoles;
     const auto add = [&](bool wanted, RandomUse use) { uses |= wanted ? 1u << use : 0u; };
     const bool areas = !sampled.spheres.empty() || !sampled.rectangles.empty();
-    add(sampled.sun_shadow == SunShadow::traced, kRandomSun);
+    add(sampled.sun_shadow != SunShadow::none, kRandomSun);
     add(areas, kRandomLight);
     add(sampled.spheres.size() + sampled.rectangles.size() > 1, kRandomPick);
-    add(bounce || sampled.ambient == AmbientLight::traced_occlusion, kRandomHemisphere);
+    add(sampled.ambient != AmbientLight::plain, kRandomHemisphere);
     add(bounce && sampled.sun_shadow != SunShadow::none, kRandomHitSun);
     add(bounce && areas, kRandomHitLight);
     return uses;

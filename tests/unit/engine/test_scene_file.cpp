@@ -286,7 +286,7 @@ TEST_CASE("scene_file: wrong sampled light is refused with its path", "[unit][sc
         return errorOf(R"({"objects": [{"shape": "box"}], "lights": {)" + lights + "}}");
     };
     CHECK(with(R"("directional": {"direction": [0,1,0], "shadow": {"type": "soft"}})") ==
-          "scene.json: /lights/directional/shadow/type: expected \"traced\", found \"soft\"");
+          "scene.json: /lights/directional/shadow/type: expected \"traced\" or \"map\", found \"soft\"");
     CHECK(with(R"("directional": {"direction": [0,1,0],
                                   "shadow": {"type": "traced", "angle_deg": 91}})")
               .find("scene.json: /lights/directional/shadow/angle_deg: ") == 0);
