@@ -16,6 +16,9 @@ constexpr uint32_t kNextX = 0xC13FA9A9u, kNextY = 0x91E10DA5u;
 /// And of the length of its steps: golden ratio, times 2^32.
 constexpr uint32_t kNextLength = 0x9E3779B9u;
 
+/// Square of the sine of the angle over the surface from which on something hides it.
+constexpr float kFlat = 0.01f;
+
 /// From the world to the pixels of a frame and back, in floats: what it decides is rough.
 struct Projector {
     MatrixF to_pixels, to_world;
@@ -41,9 +44,10 @@ struct Projector {
     }
 };
 
-/// Whether what is seen at a place above the surface at `from` hides it.
-bool hides(const GBuffer& gbuffer, const Projector& view, const Float3& place, const Float3& from,
-           float distance) {
+/// Whether what is seen at a place above a surface point hides it: something that is near that
+/// point, and over its plane by more than the depths of neighbouring pixels can feign.
+bool hides(const GBuffer& gbuffer, const Projector& view, const Float3& place,
+           const LitPoint& point, float distance) {
     const float w = Projector::row(view.to_pixels, 3, place.x, place.y, place.z);
     if (!(w > 1e-20f)) {
         return false;
@@ -61,8 +65,9 @@ bool hides(const GBuffer& gbuffer, const Projector& view, const Float3& place, c
         return false;
     }
     const Float3 seen = view.placeOf(gbuffer, x, y);
-    const Float3 way{seen.x - from.x, seen.y - from.y, seen.z - from.z};
-    return dot(way, way) < distance * distance;
+    const Float3 way{seen.x - point.origin.x, seen.y - point.origin.y, seen.z - point.origin.z};
+    const float above = dot(way, point.normal), length2 = dot(way, way);
+    return length2 < distance * distance && above > 0.0f && above * above > kFlat * length2;
 }
 
 /// Looked for along the way at lengths that are halved.
@@ -73,7 +78,7 @@ bool blocked(const GBuffer& gbuffer, const Projector& view, const LitPoint& poin
         const Float3 place{point.origin.x + direction.x * length,
                            point.origin.y + direction.y * length,
                            point.origin.z + direction.z * length};
-        if (hides(gbuffer, view, place, point.origin, end)) {
+        if (hides(gbuffer, view, place, point, end)) {
             return true;
         }
         length = length * 0.5f;
