@@ -1,45 +1,27 @@
 // The upscaler's gather in lanes of 16 bits; upscale_reference.cpp is the truth and names the
 // steps. Windows and ways are the frame's pixels', in lanes as the gather has them, a row ahead of
-// their samples; output pixels take them over and look at samples of their own. Included once per
-// target by taa_simd.cpp.
+// their samples; the output pixels in each of them then look at samples of their own. Included once
+// per target by taa_simd.cpp.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::taa {
 namespace HWY_NAMESPACE {
 
-/// Where a layer of each of a row's pixels was in a frame; rows of −32768: it was not followed.
-struct StopRow {
-    PixelRow column, row;
-    PixelRow x_fx8, y_fx8;        ///< beyond it, less the offset of the samples there
-    PixelRow motion[2];           ///< into the frame
-    PixelRow jitter_x, jitter_y;  ///< only where tiles lie otherwise
-};
-constexpr int kNotFollowed = -32768;
-
-/// A row of the frame's pixels in a tile.
-struct LookedAt {
-    PixelRow surface, depth, step, tolerance, normal, moved, layered, apart, slide;
-    PixelRow far_surface, far_depth, far_step;
-    bool any_moved, any_layered, any_apart;
-    StopRow own[kMaxUpscaleRing], far[upscale::kFarFrames];
-    /// Frames, and of the farther layer, of each group of pixels.
-    int frames[kTileSize / kBlockLanes], far_frames[kTileSize / kBlockLanes];
+/// The output pixels of a group of the frame's pixels.
+struct OutputBlock {
+    const OutputColumns& columns;
+    int x, y, i;         ///< the group's first pixel; its number in the tile
+    int across, y0, y1;  ///< in each pixel at most; rows
+    int offset_y[kMaxUpscale];
+    MS wanted[kMaxUpscale][kMaxUpscale];  ///< by row and number in the pixel
 };
 
-HWY_INLINE void storeStop(const Job& job, const SlotIn& slot, const WayStop& stop, int i,
-                          StopRow& row) {
-    const JitterLanes jitter = jitterAt(job, slot, stop.place.column, stop.place.row, stop.alive);
-    row.column.store(i, stop.place.column);
-    row.row.store(i, hn::IfThenElse(stop.alive, stop.place.row, set(kNotFollowed)));
-    row.x_fx8.store(i, hn::Sub(stop.place.x_fx8, jitter.x_fx8));
-    row.y_fx8.store(i, hn::Sub(stop.place.y_fx8, jitter.y_fx8));
-    row.motion[0].store(i, stop.motion[0]);
-    row.motion[1].store(i, stop.motion[1]);
-    if (slot.tile_jitter != nullptr) {
-        row.jitter_x.store(i, jitter.x_fx8);
-        row.jitter_y.store(i, jitter.y_fx8);
-    }
-}
+/// A group of the frame's pixels.
+struct PixelGroup {
+    WindowLanes window;
+    Walker walker;
+    WayOf<kMaxUpscaleRing> way;  ///< of the window's owner
+};
 
 HWY_INLINE void stepLimited(const Job& job, int k, int frames, const LayerLanes& layer, VS limit,
                             Walker& walker, WayOf<kMaxUpscaleRing>& way) {
@@ -47,67 +29,17 @@ HWY_INLINE void stepLimited(const Job& job, int k, int frames, const LayerLanes&
     stepWay(job, k, k + 1 == frames, layer, set(32767), walker, way);
 }
 
-/// Frames from `begin` on in which no lane of a group is followed.
-HWY_INLINE void endWay(StopRow* stops, int begin, int end, int i) {
-    for (int k = begin; k < end; ++k) {
-        stops[k].row.store(i, set(kNotFollowed));
-    }
-}
-
-/// A group of the frame's pixels while it is looked at.
-struct PixelGroup {
-    WindowLanes window;
-    Walker walker;
-    WayOf<kMaxUpscaleRing> way;
-};
-
-/// The farther layers' ways of a group.
-HWY_NOINLINE void lookFar(const Job& job, int x, int y, int i, int g, PixelGroup& group,
-                          LookedAt& row) {
-    const WindowLanes& w = group.window;
-    const int frames = std::min(upscale::kFarFrames, job.frames);
-    group.walker.start(x, y, w.far, w.apart);
-    group.way.frames = 0;
-    for (int k = 0; k < frames; ++k) {
-        stepLimited(job, k, frames, w.far, w.frames, group.walker, group.way);
-    }
-    row.far_frames[g] = group.way.frames;
-    for (int k = 0; k < group.way.frames; ++k) {
-        storeStop(job, job.slot[k], group.way.stop[k], i, row.far[k]);
-    }
-}
-
 /// Windows and ways of a row of a tile.
-HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, LookedAt& row) {
+HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, PixelGroup* groups) {
     const int count = (tile.x1 - tile.x0 + kHalves - 1) / kHalves;
-    PixelGroup groups[kTileSize / kHalves];
-    row.any_moved = row.any_layered = row.any_apart = false;
     prefetchWindows(job, tile, y);
     for (int g = 0; g < count; ++g) {
-        const int x = tile.x0 + g * kHalves, i = g * kHalves;
-        PixelGroup& group = groups[g];
-        WindowLanes& w = group.window;
+        const int x = tile.x0 + g * kHalves;
         const MS pixels = lanesUnder(tile.x1 - x);
-        windowOf(job, x, y, pixels, w,
+        windowOf(job, x, y, pixels, groups[g].window,
                  {kMaxUpscaleRing, upscale::kCalmFrames, upscale::kFlatFrames});
-        row.surface.store(i, w.owner.surface);
-        row.depth.store(i, w.owner.depth);
-        row.step.store(i, w.owner.step);
-        row.tolerance.store(i, w.owner.tolerance);
-        row.normal.store(i, w.normal);
-        const DS d;
-        row.moved.store(i, hn::VecFromMask(d, w.moved));
-        row.layered.store(i, hn::VecFromMask(d, w.layered));
-        row.apart.store(i, hn::VecFromMask(d, w.apart));
-        row.slide.store(i, w.slide);
-        row.far_surface.store(i, w.far.surface);
-        row.far_depth.store(i, w.far.depth);
-        row.far_step.store(i, w.far.step);
-        row.any_moved |= w.any_moved;
-        row.any_layered |= w.any_layered;
-        row.any_apart |= w.any_apart;
-        group.walker.start(x, y, w.owner, pixels);
-        group.way.frames = 0;
+        groups[g].walker.start(x, y, groups[g].window.owner, pixels);
+        groups[g].way.frames = 0;
     }
     // Each step of a way waits for the one before: all groups of the row wait at once.
     for (int k = 0; k < job.frames; ++k) {
@@ -117,144 +49,33 @@ HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, Lo
                         group.way);
         }
     }
-    int most = 0, most_far = 0;
     for (int g = 0; g < count; ++g) {
-        const int x = tile.x0 + g * kHalves, i = g * kHalves;
-        PixelGroup& group = groups[g];
-        row.frames[g] = group.way.frames;
-        for (int k = 0; k < group.way.frames; ++k) {
-            storeStop(job, job.slot[k], group.way.stop[k], i, row.own[k]);
-            if (k > 0) {
-                prefetchStop(job, job.slot[k], group.way.stop[k].place, g + 1 == count);
-            }
-        }
-        row.far_frames[g] = 0;
-        if (group.window.any_apart) {
-            lookFar(job, x, y, i, g, group, row);
-        }
-        most = std::max(most, row.frames[g]);
-        most_far = std::max(most_far, row.far_frames[g]);
-    }
-    for (int g = 0; g < count; ++g) {
-        endWay(row.own, row.frames[g], most, g * kHalves);
-        endWay(row.far, row.far_frames[g], most_far, g * kHalves);
-    }
-}
-
-/// The samples that count for a group of output pixels.
-struct OutputTaps {
-    static constexpr int kMost = kMaxUpscaleRing + 4;
-    VS weight[kMost], ex[kMost], ey[kMost], behind[kMost];
-    VS colour[3][kMost];
-    int count = 0;
-
-    HWY_INLINE void add(VS w, VS x, VS y, VS back, const SlotIn& slot, const Samples& samples) {
-        weight[count] = w;
-        ex[count] = x;
-        ey[count] = y;
-        behind[count] = back;
-        for (int c = 0; c < 3; ++c) {
-            colour[c][count] = samples.of(slot.colour[c]);
-        }
-        ++count;
-    }
-};
-
-HWY_INLINE VS toImage(VS distance_fx8, int ratio_fx8) {
-    return hn::MulHigh(hn::ShiftLeft<6>(distance_fx8), set(4 * ratio_fx8));
-}
-HWY_INLINE VS axisKernels(VS e_fx8) {
-    const VS scaled = hn::Add(hn::Mul(hn::Sub(set(205), hn::Abs(e_fx8)), set(53)), set(256));
-    return hn::Min(hn::Max(hn::ShiftRight<9>(scaled), zero()), set(kAxisWeight));
-}
-HWY_INLINE VS placesOf(VS e_fx8) {
-    const VS place = hn::ShiftRight<2>(e_fx8);
-    return hn::Max(hn::Min(place, set(upscale::kFarthest)), set(-upscale::kFarthest));
-}
-
-/// What the group's pixels look at.
-struct OutputWindow {
-    const OutputGroup& group;
-    const LookedAt& row;
-    LayerLanes own, far;
-    VS normal, slide;
-    MS pixels, moved, layered, apart;
-    bool any_moved = false, any_apart = false;
-    int offset_y;
-    VS offset_x;
-
-    HWY_INLINE OutputWindow(const OutputGroup& g, const LookedAt& r, MS asked, int y_fx8)
-        : group(g), row(r), pixels(asked), offset_y(y_fx8) {
-        own = {g.spread(r.surface),
-               g.spread(r.depth),
-               g.spread(r.step),
-               g.spread(r.tolerance),
-               {zero(), zero()}};
-        far = {zero(), zero(), zero(), set(kDepthTolerance), {zero(), zero()}};
-        offset_x = hn::LoadU(DS(), g.columns.offset + g.i);
-        normal = slide = zero();
-        moved = layered = apart = never();
-        if (r.any_moved) {
-            moved = g.spreadMask(r.moved);
-            normal = g.spread(r.normal);
-            any_moved = any(moved);
-        }
-        if (r.any_layered) {
-            layered = g.spreadMask(r.layered);
-            far.surface = g.spread(r.far_surface);
-            far.depth = g.spread(r.far_depth);
-            far.step = g.spread(r.far_step);
-        }
-        if (r.any_apart) {
-            slide = g.spread(r.slide);
-            apart = g.spreadMask(r.apart);
-            any_apart = any(hn::And(apart, pixels));
+        const WayOf<kMaxUpscaleRing>& way = groups[g].way;
+        for (int k = 1; k < way.frames; ++k) {
+            prefetchStop(job, job.slot[k], way.stop[k].place, g + 1 == count);
         }
     }
-    int frames(const int* of_groups) const {
-        int most = 0;
-        const int last = group.lastPixel() / kHalves;
-        for (int g = group.firstPixel() / kHalves; g <= last; ++g) {
-            most = std::max(most, of_groups[g]);
-        }
-        return most;
-    }
-};
-
-/// Where the ways of a group's pixels come to in a frame.
-struct Spot {
-    VS column, row, x_fx8, y_fx8;
-    MS alive;
-};
-HWY_INLINE Spot spotOf(const OutputWindow& w, const StopRow& stop) {
-    Spot spot;
-    spot.column = w.group.spread(stop.column);
-    spot.row = w.group.spread(stop.row);
-    spot.x_fx8 = hn::Add(w.group.spread(stop.x_fx8), w.offset_x);
-    spot.y_fx8 = hn::Add(w.group.spread(stop.y_fx8), set(w.offset_y));
-    spot.alive = hn::And(w.pixels, hn::Ne(spot.row, set(kNotFollowed)));
-    return spot;
 }
 
 /// Lanes whose samples are in the picture and lie as those of the place's tile do.
-HWY_INLINE MS usable(const Job& job, const SlotIn& slot, const OutputWindow& w, const StopRow& stop,
-                     VS column, VS row, MS alive) {
+HWY_INLINE MS usable(const Job& job, const SlotIn& slot, const JitterLanes& jitter, VS column,
+                     VS row, MS alive) {
     const VS out = hn::Or(beyond(column, job.width - 1), beyond(row, job.height - 1));
     alive = hn::And(alive, hn::Eq(out, zero()));
-    if (slot.tile_jitter != nullptr) {
+    if (!jitter.alike && any(alive)) {
         const JitterLanes there = jitterAt(job, slot, column, row, alive);
-        alive = hn::And(alive, hn::Eq(there.x_fx8, w.group.spread(stop.jitter_x)));
-        alive = hn::And(alive, hn::Eq(there.y_fx8, w.group.spread(stop.jitter_y)));
+        alive = hn::And(alive, hn::Eq(there.x_fx8, jitter.x_fx8));
+        alive = hn::And(alive, hn::Eq(there.y_fx8, jitter.y_fx8));
     }
     return alive;
 }
 
 /// Old samples on the owner's way where not all are the owner's: counts().
-HWY_NOINLINE VS sifted(const Job& job, int k, const OutputWindow& w, const Outlook& own,
-                       const Outlook& far, const StopRow& stop, const Samples& samples, VS id,
+HWY_NOINLINE VS sifted(const Job& job, int k, const WindowLanes& w, const Outlook& own,
+                       const Outlook& far, const VS motion[2], const Pieces& pieces, VS id,
                        VS depth, MS same, VS weight, VS& behind) {
     const SlotIn& slot = job.slot[k];
-    const Depths near(w.own, own);
+    const Depths near(w.owner, own);
     const MS weighs = hn::Gt(weight, zero());
     const MS farther = hn::AndNot(hn::Or(same, hn::Gt(depth, near.high)), weighs);
     const MS moved = hn::Lt(id, zero());
@@ -272,8 +93,7 @@ HWY_NOINLINE VS sifted(const Job& job, int k, const OutputWindow& w, const Outlo
     }
     const MS hard = hn::And(weighs, hn::Or(hn::Not(easy), hn::And(w.moved, moved)));
     if (any(hard)) {
-        const VS other[2] = {samples.of(slot.motion[0]), samples.of(slot.motion[1])};
-        const VS motion[2] = {w.group.spread(stop.motion[0]), w.group.spread(stop.motion[1])};
+        const VS other[2] = {pieces.fetch(slot.motion[0]), pieces.fetch(slot.motion[1])};
         MS off = hn::Or(hn::Eq(other[0], set(kNoHistory)),
                         hn::Gt(slideOf(other, motion), set(kMaxSlide / k)));
         if (job.start_age != nullptr) {
@@ -284,125 +104,139 @@ HWY_NOINLINE VS sifted(const Job& job, int k, const OutputWindow& w, const Outlo
     if (w.any_moved) {
         const MS lit = hn::And(hn::AndNot(hn::Eq(w.normal, zero()), w.moved), same);
         if (any(hn::And(lit, hn::Gt(weight, zero())))) {
-            const Normals then(samples.of(slot.normal)), now(w.normal);
+            const Normals then(pieces.fetch(slot.normal)), now(w.normal);
             drop(hn::AndNot(litAlike(then, now), lit));
         }
     }
     return weight;
 }
 
-/// The four samples of this frame around the pixels: all of the owner's way, of the farther
-/// layer's those that show it.
-template <class Keep>
-HWY_INLINE void takeFresh(const upscale::Job& job, const OutputWindow& w, const StopRow& stop,
-                          OutputTaps& taps, const Keep& keep) {
-    const Job& frame = job.frame;
-    const SlotIn& slot = frame.slot[0];
-    const Spot spot = spotOf(w, stop);
-    const VS x0 = hn::Add(spot.column, hn::ShiftRight<8>(spot.x_fx8));
-    const VS y0 = hn::Add(spot.row, hn::ShiftRight<8>(spot.y_fx8));
-    const VS fx = hn::And(spot.x_fx8, set(255)), fy = hn::And(spot.y_fx8, set(255));
-    for (int t = 0; t < 4; ++t) {
-        const VS dx = hn::Sub(set((t & 1) * 256), fx), dy = hn::Sub(set((t >> 1) * 256), fy);
-        const VS column = hn::Add(x0, set(t & 1)), row = hn::Add(y0, set(t >> 1));
-        const VS ex = toImage(dx, job.x.ratio_fx8), ey = toImage(dy, job.y.ratio_fx8);
-        const VS side_x = hn::Sub(set(256), hn::Abs(dx)), side_y = hn::Sub(set(256), hn::Abs(dy));
-        const VS tent = hn::MulHigh(hn::ShiftLeft<3>(side_x), hn::ShiftLeft<2>(side_y));
-        VS weight = hn::Add(hn::ShiftRight<1>(hn::Mul(axisKernels(ex), axisKernels(ey))), tent);
-        const MS alive = usable(frame, slot, w, stop, column, row, spot.alive);
-        weight = hn::IfThenElseZero(alive, weight);
-        const Samples samples(column, row, alive, frame.width, frame.height, frame.stride);
-        weight = keep(samples, weight);
-        taps.add(weight, placesOf(ex), placesOf(ey), zero(), slot, samples);
-    }
-}
+/// Samples along the owners' ways.
+struct OwnKeep {
+    const Job& job;
+    const WindowLanes& window;
+    Outlook own, far;
 
-/// The nearest sample of an old frame, which `keep` judges.
+    OwnKeep(const Job& j, const WindowLanes& w) : job(j), window(w) {
+        own.start(w.owner);
+        far.start(w.far);
+    }
+    HWY_INLINE void next() {
+        own.next(window.owner);
+        far.next(window.far);
+    }
+    HWY_INLINE VS operator()(int k, const WayStop& stop, const Pieces& pieces, VS weight,
+                             VS& behind) const {
+        if (k == 0) {
+            return weight;
+        }
+        const VS id = pieces.fetch(job.slot[k].id), depth = pieces.fetch(job.slot[k].depth);
+        const MS same = hn::And(hn::Eq(surfaces(id), window.owner.surface),
+                                Depths(window.owner, own).within(depth));
+        if (window.any_moved || any(hn::AndNot(same, hn::Gt(weight, zero())))) {
+            weight = sifted(job, k, window, own, far, stop.motion, pieces, id, depth, same, weight,
+                            behind);
+        }
+        if (job.change_age != nullptr) {
+            weight = hn::IfThenZeroElse(olderThan(job.change_age, k, surfaces(id)), weight);
+        }
+        return weight;
+    }
+};
+
+/// Samples of the farther layers, where the owners did not hide them.
+struct FarKeep {
+    const Job& job;
+    const WindowLanes& window;
+    Outlook own, far;
+
+    FarKeep(const Job& j, const WindowLanes& w) : job(j), window(w) {
+        own.start(w.owner);
+        far.start(w.far);
+    }
+    HWY_INLINE void next() {
+        own.next(window.owner);
+        far.next(window.far);
+    }
+    HWY_INLINE VS operator()(int k, const WayStop&, const Pieces& pieces, VS weight, VS&) const {
+        const VS id = pieces.fetch(job.slot[k].id), depth = pieces.fetch(job.slot[k].depth);
+        const Depths near(window.owner, own);
+        const MS same = hn::And(hn::Eq(surfaces(id), window.owner.surface), near.within(depth));
+        const MS nearer =
+            hn::Or(hn::Gt(depth, near.high), hn::Gt(depth, Depths(window.far, far).high));
+        weight = hn::IfThenZeroElse(hn::Or(same, nearer), weight);
+        if (job.change_age != nullptr && k > 0) {
+            weight = hn::IfThenZeroElse(olderThan(job.change_age, k, surfaces(id)), weight);
+        }
+        return weight;
+    }
+};
+
+/// A frame's sample at a crossing of two axes.
 template <class Keep>
-HWY_INLINE void takeNearest(const upscale::Job& job, int k, const OutputWindow& w,
-                            const StopRow& stop, OutputTaps& taps, const Keep& keep) {
-    const Job& frame = job.frame;
-    const SlotIn& slot = frame.slot[k];
-    const Spot spot = spotOf(w, stop);
-    const VS middle = set(128);
-    const VS x = hn::Add(spot.x_fx8, middle), y = hn::Add(spot.y_fx8, middle);
-    const VS column = hn::Add(spot.column, hn::ShiftRight<8>(x));
-    const VS row = hn::Add(spot.row, hn::ShiftRight<8>(y));
-    const MS alive = usable(frame, slot, w, stop, column, row, spot.alive);
+HWY_INLINE void takeSample(const Job& job, int k, const WayStop& stop, const JitterLanes& jitter,
+                           const AxisSite& across, const AxisSite& down, MS wanted,
+                           const Keep& keep, OutputTaps& taps) {
+    const SlotIn& slot = job.slot[k];
+    const MS alive = usable(job, slot, jitter, across.number, down.number, wanted);
     if (!any(alive)) {
         return;
     }
-    const VS ex = toImage(hn::Sub(middle, hn::And(x, set(255))), job.x.ratio_fx8);
-    const VS ey = toImage(hn::Sub(middle, hn::And(y, set(255))), job.y.ratio_fx8);
-    VS weight = hn::Add(hn::ShiftRight<1>(hn::Mul(axisKernels(ex), axisKernels(ey))),
-                        set(upscale::kFarWeight));
-    weight = hn::IfThenElseZero(alive, weight);
-    const Samples samples(column, row, alive, frame.width, frame.height, frame.stride);
+    const VS narrow = hn::ShiftRight<1>(hn::Mul(across.kernel, down.kernel));
+    const VS wide = k == 0 ? hn::MulHigh(hn::ShiftLeft<3>(across.tent), hn::ShiftLeft<2>(down.tent))
+                           : set(upscale::kFarWeight);
+    VS weight = hn::IfThenElseZero(alive, hn::Add(narrow, wide));
+    const Pieces pieces(across.number, down.number, alive, job.stride);
     VS behind = zero();
-    const VS id = samples.of(slot.id);
-    weight = keep(samples, id, weight, behind);
-    if (frame.change_age != nullptr) {
-        weight = hn::IfThenZeroElse(olderThan(frame.change_age, k, surfaces(id)), weight);
-    }
-    taps.add(weight, placesOf(ex), placesOf(ey), behind, slot, samples);
+    weight = keep(k, stop, pieces, weight, behind);
+    taps.add(weight, across.place, down.place, behind, slot, pieces);
 }
 
-/// Samples along the owners' ways.
-HWY_NOINLINE void collectOwn(const upscale::Job& job, const OutputWindow& w, OutputTaps& taps) {
+/// visitSamples() for all output pixels of a block.
+template <class Keep>
+HWY_NOINLINE void collectOutput(const upscale::Job& job, const OutputBlock& block,
+                                const WayOf<kMaxUpscaleRing>& way, Keep keep, OutputTaps* taps) {
     const Job& frame = job.frame;
-    const int frames = w.frames(w.row.frames);
-    taps.count = 0;
-    takeFresh(job, w, w.row.own[0], taps, [](const Samples&, VS weight) { return weight; });
-    Outlook own, far;
-    own.start(w.own);
-    far.start(w.far);
-    for (int k = 1; k < frames; ++k) {
-        own.next(w.own);
-        far.next(w.far);
-        const StopRow& stop = w.row.own[k];
-        takeNearest(
-            job, k, w, stop, taps, [&](const Samples& samples, VS id, VS weight, VS& behind) {
-                const VS depth = samples.of(frame.slot[k].depth);
-                const MS same =
-                    hn::And(hn::Eq(surfaces(id), w.own.surface), Depths(w.own, own).within(depth));
-                const MS others = hn::AndNot(same, hn::Gt(weight, zero()));
-                if (!w.any_moved && !any(others)) {
-                    return weight;
-                }
-                return sifted(frame, k, w, own, far, stop, samples, id, depth, same, weight,
-                              behind);
-            });
+    const int rows = block.y1 - block.y0;
+    for (int t = 0; t < rows * kMaxUpscale; ++t) {
+        taps[t].count = 0;
     }
-}
-
-/// Samples of the farther layers, where the owners did not hide them.
-HWY_NOINLINE void collectFar(const upscale::Job& job, const OutputWindow& w, OutputTaps& taps) {
-    const Job& frame = job.frame;
-    const int frames = w.frames(w.row.far_frames);
-    taps.count = 0;
-    Outlook own, far;
-    own.start(w.own);
-    far.start(w.far);
-    const auto judge = [&](VS id, VS depth, VS weight) {
-        const Depths near(w.own, own);
-        const MS same = hn::And(hn::Eq(surfaces(id), w.own.surface), near.within(depth));
-        const MS nearer = hn::Or(hn::Gt(depth, near.high), hn::Gt(depth, Depths(w.far, far).high));
-        return hn::IfThenZeroElse(hn::Or(same, nearer), weight);
-    };
-    for (int k = 0; k < frames; ++k) {
-        const SlotIn& slot = frame.slot[k];
-        if (k == 0) {
-            takeFresh(job, w, w.row.far[0], taps, [&](const Samples& samples, VS weight) {
-                return judge(samples.of(slot.id), samples.of(slot.depth), weight);
-            });
-            continue;
+    for (int k = 0; k < way.frames; ++k) {
+        const WayStop& stop = way.stop[k];
+        const JitterLanes jitter =
+            jitterAt(frame, frame.slot[k], stop.place.column, stop.place.row, stop.alive);
+        const VS x = hn::Sub(stop.place.x_fx8, jitter.x_fx8);
+        const VS y = hn::Sub(stop.place.y_fx8, jitter.y_fx8);
+        const int each = k == 0 ? 2 : 1;
+        AxisSite across[kMaxUpscale * 2], down[kMaxUpscale * 2];
+        for (int p = 0; p < block.across; ++p) {
+            const VS part = hn::Add(x, load(block.columns.offset[p] + block.i));
+            if (k > 0) {
+                across[p] = nearestSite(stop.place.column, part, job.x.ratio_fx8);
+            } else {
+                across[2 * p] = besideSite(stop.place.column, part, 0, job.x.ratio_fx8);
+                across[2 * p + 1] = besideSite(stop.place.column, part, 1, job.x.ratio_fx8);
+            }
         }
-        own.next(w.own);
-        far.next(w.far);
-        takeNearest(job, k, w, w.row.far[k], taps,
-                    [&](const Samples& samples, VS id, VS weight, VS&) {
-                        return judge(id, samples.of(slot.depth), weight);
-                    });
+        for (int r = 0; r < rows; ++r) {
+            const VS part = hn::Add(y, set(block.offset_y[r]));
+            if (k > 0) {
+                down[r] = nearestSite(stop.place.row, part, job.y.ratio_fx8);
+            } else {
+                down[2 * r] = besideSite(stop.place.row, part, 0, job.y.ratio_fx8);
+                down[2 * r + 1] = besideSite(stop.place.row, part, 1, job.y.ratio_fx8);
+            }
+        }
+        for (int r = 0; r < rows; ++r) {
+            for (int p = 0; p < block.across; ++p) {
+                const MS wanted = hn::And(block.wanted[r][p], stop.alive);
+                for (int t = 0; t < each * each; ++t) {
+                    takeSample(frame, k, stop, jitter, across[each * p + t % each],
+                               down[each * r + t / each], wanted, keep, taps[r * kMaxUpscale + p]);
+                }
+            }
+        }
+        keep.next();
     }
 }
 
@@ -507,102 +341,129 @@ HWY_NOINLINE MS fitOutput(const OutputTaps& taps, const Colour* behind, MS separ
     return fits;
 }
 
-/// Writes the first `count` of the group's pixels, those of `pixels`.
-HWY_INLINE void showOutput(const upscale::Job& job, ptrdiff_t at, int count, MS pixels,
-                           const Colour& colour, VS weight) {
-    const DU d;
-    const hn::Rebind<uint8_t, DS> d8;
-    alignas(64) uint16_t values[3][kHalves];
-    alignas(64) uint8_t counts[kHalves];
-    alignas(64) int16_t wanted[kHalves];
-    VS samples = hn::ShiftRight<7>(hn::Add(weight, set(64)));
-    samples = hn::Min(hn::Max(samples, set(1)), set(255));
-    if (count >= kHalves && hn::AllTrue(DS(), pixels)) {
+/// An output pixel of each lane.
+struct Shown {
+    Colour colour;
+    VS count;
+};
+
+/// Writes a row of a block.
+HWY_INLINE void showOutput(const upscale::Job& job, const OutputBlock& block, int row,
+                           const Shown* shown) {
+    alignas(64) uint16_t values[kMaxUpscale][3][kHalves];
+    alignas(64) int16_t counts[kMaxUpscale][kHalves], wanted[kMaxUpscale][kHalves];
+    for (int p = 0; p < block.across; ++p) {
         for (int c = 0; c < 3; ++c) {
-            hn::StoreU(colour.of[c], d, job.shown[c] + at);
+            hn::Store(shown[p].colour.of[c], DU(), values[p][c]);
         }
-        hn::StoreU(hn::DemoteTo(d8, samples), d8, job.shown_count + at);
-        return;
+        hn::Store(shown[p].count, DS(), counts[p]);
+        hn::Store(hn::VecFromMask(DS(), block.wanted[row][p]), DS(), wanted[p]);
     }
-    for (int c = 0; c < 3; ++c) {
-        hn::Store(colour.of[c], d, values[c]);
-    }
-    hn::Store(hn::DemoteTo(d8, samples), d8, counts);
-    hn::Store(hn::VecFromMask(DS(), pixels), DS(), wanted);
-    for (int i = 0; i < std::min(count, kHalves); ++i) {
-        if (wanted[i] != 0) {
-            for (int c = 0; c < 3; ++c) {
-                job.shown[c][at + i] = values[c][i];
+    const ptrdiff_t start = (block.y0 + row) * job.stride;
+    for (int i = 0; i < kHalves; ++i) {
+        const ptrdiff_t at = start + block.columns.first[block.i + i];
+        for (int p = 0; p < block.across; ++p) {
+            if (wanted[p][i] != 0) {
+                for (int c = 0; c < 3; ++c) {
+                    job.shown[c][at + p] = values[p][c][i];
+                }
+                job.shown_count[at + p] = uint8_t(counts[p][i]);
             }
-            job.shown_count[at + i] = counts[i];
         }
     }
 }
 
-/// Lanes without samples get this frame's nearest one.
-HWY_NOINLINE void fillOutput(const upscale::Job& job, int x, int y, int count, MS lanes,
-                             Colour& colour) {
-    alignas(64) uint16_t values[3][kHalves];
-    alignas(64) int16_t wanted[kHalves];
-    hn::Store(hn::VecFromMask(DS(), lanes), DS(), wanted);
-    for (int c = 0; c < 3; ++c) {
-        hn::Store(colour.of[c], DU(), values[c]);
-        for (int i = 0; i < std::min(count, kHalves); ++i) {
-            if (wanted[i] != 0) {
-                values[c][i] = job.frame.now.colour[c][upscale::nearestInFrame(job, x + i, y)];
+/// Which output pixels are asked for; whether any is.
+HWY_INLINE bool ask(const upscale::Job& job, int row, bool sums_valid, OutputBlock& block) {
+    block.y = row;
+    block.y0 = job.y.firstOf(row);
+    block.y1 = job.y.firstOf(row + 1);
+    MS all = never();
+    for (int y = block.y0; y < block.y1; ++y) {
+        const int r = y - block.y0;
+        block.offset_y[r] = job.y.toFrame(job.y.offsetOf(y, row));
+        for (int p = 0; p < block.across; ++p) {
+            MS wanted = hn::Ne(load(block.columns.used[p] + block.i), zero());
+            if (sums_valid) {
+                alignas(64) int16_t counts[kHalves];
+                for (int i = 0; i < kHalves; ++i) {
+                    const int x = block.columns.first[block.i + i] + p;
+                    counts[i] = int16_t(std::min<int>(job.sums.count[y * job.stride + x], 32767));
+                }
+                wanted = hn::And(wanted, hn::Lt(hn::Load(DS(), counts), set(job.settled)));
             }
+            block.wanted[r][p] = wanted;
+            all = hn::Or(all, wanted);
         }
-        colour.of[c] = hn::Load(DU(), values[c]);
     }
+    return any(all);
 }
 
-HWY_INLINE void gatherOutput(const upscale::Job& job, const OutputGroup& group, const LookedAt& row,
-                             int y, int offset_y, bool sums_valid) {
-    const int x = group.columns.first + group.i, count = group.columns.end - x;
-    const ptrdiff_t at = y * job.stride + x;
-    MS pixels = lanesUnder(count);
-    if (sums_valid) {
-        const VU samples = hn::LoadU(DU(), job.sums.count + at);
-        pixels = hn::And(pixels, hn::Lt(sign(samples), set(job.settled)));
-        if (!any(pixels)) {
-            return;
-        }
+HWY_NOINLINE void gatherBlock(const upscale::Job& job, const OutputBlock& block,
+                              const PixelGroup& group) {
+    const WindowLanes& window = group.window;
+    const int rows = block.y1 - block.y0;
+    const ptrdiff_t at = block.y * job.frame.stride + block.x;
+    Shown shown[kMaxUpscale * kMaxUpscale];
+    Colour behind[kMaxUpscale * kMaxUpscale];
+    MS separate[kMaxUpscale * kMaxUpscale];
+    OutputTaps taps[kMaxUpscale * kMaxUpscale];
+    Colour own;
+    for (int c = 0; c < 3; ++c) {
+        own.of[c] = unsign(flipTop(load(job.frame.slot[0].colour[c] + at)));
     }
-    const OutputWindow window(group, row, pixels, offset_y);
-    OutputTaps taps;
-    Colour colour{{hn::Zero(DU()), hn::Zero(DU()), hn::Zero(DU())}}, behind = colour;
-    MS separate = never();
-    VS weight;
     if (window.any_apart) {
-        collectFar(job, window, taps);
-        separate = hn::And(fitOutput(taps, nullptr, never(), weight, behind), window.apart);
+        const int frames = std::min(upscale::kFarFrames, job.frame.frames);
+        Walker walker;
+        walker.start(block.x, block.y, window.far, window.apart);
+        WayOf<kMaxUpscaleRing> way;
+        for (int k = 0; k < frames; ++k) {
+            stepLimited(job.frame, k, frames, window.far, window.frames, walker, way);
+        }
+        collectOutput(job, block, way, FarKeep(job.frame, window), taps);
+        for (int t = 0; t < rows * kMaxUpscale; ++t) {
+            if (t % kMaxUpscale < block.across) {
+                VS weight;
+                behind[t] = own;
+                separate[t] =
+                    hn::And(fitOutput(taps[t], nullptr, never(), weight, behind[t]), window.apart);
+            }
+        }
     }
-    collectOwn(job, window, taps);
-    const MS fits = fitOutput(taps, window.any_apart ? &behind : nullptr, separate, weight, colour);
-    const MS bare = hn::AndNot(fits, pixels);
-    if (any(bare)) {
-        fillOutput(job, x, y, count, bare, colour);
+    collectOutput(job, block, group.way, OwnKeep(job.frame, window), taps);
+    for (int r = 0; r < rows; ++r) {
+        for (int p = 0; p < block.across; ++p) {
+            const int t = r * kMaxUpscale + p;
+            VS weight;
+            shown[p].colour = own;
+            fitOutput(taps[t], window.any_apart ? &behind[t] : nullptr,
+                      window.any_apart ? separate[t] : never(), weight, shown[p].colour);
+            const VS count = hn::ShiftRight<7>(hn::Add(weight, set(64)));
+            shown[p].count = hn::Min(hn::Max(count, set(1)), set(255));
+        }
+        showOutput(job, block, r, shown);
     }
-    showOutput(job, at, count, pixels, colour, weight);
 }
 
 /// All slots have the frame's size.
 HWY_ATTR void upscaleTile(const upscale::Job& job, const TileRect& tile, bool sums_valid) noexcept {
-    const TileRect out = upscale::outputRect(job, tile);
-    const OutputColumns columns(job, tile.x0, out.x0, out.x1);
-    LookedAt rows[2];
+    constexpr int kGroups = kTileSize / kHalves;
+    const OutputColumns columns(job, tile);
+    const int count = (tile.x1 - tile.x0 + kHalves - 1) / kHalves;
+    PixelGroup rows[2][kGroups];
     // The next row's samples are on their way while this one's pixels are made.
-    for (int row = tile.y0 - 1; row < tile.y1; ++row) {
-        if (row + 1 < tile.y1) {
-            lookAlongFrame(job.frame, tile, row + 1, rows[(row + 1) & 1]);
+    for (int y = tile.y0 - 1; y < tile.y1; ++y) {
+        if (y + 1 < tile.y1) {
+            lookAlongFrame(job.frame, tile, y + 1, rows[(y + 1) & 1]);
         }
-        if (row < tile.y0) {
-            continue;
-        }
-        for (int y = job.y.firstOf(row); y < job.y.firstOf(row + 1); ++y) {
-            const int offset_y = job.y.toFrame(job.y.offsetOf(y, row));
-            for (int i = 0; i < out.x1 - out.x0; i += kHalves) {
-                gatherOutput(job, OutputGroup(columns, i), rows[row & 1], y, offset_y, sums_valid);
+        for (int g = 0; g < count && y >= tile.y0; ++g) {
+            OutputBlock block{.columns = columns,
+                              .x = tile.x0 + g * kHalves,
+                              .y = y,
+                              .i = g * kHalves,
+                              .across = columns.most};
+            if (ask(job, y, sums_valid, block)) {
+                gatherBlock(job, block, rows[y & 1][g]);
             }
         }
     }

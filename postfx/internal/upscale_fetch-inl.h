@@ -1,132 +1,105 @@
-// Output pixels in lanes, a group of a row: what they share with the frame's pixels that hold them,
-// and samples of a slot for them. Included once per target by taa_simd.cpp.
+// Output pixels in lanes: lane i holds one of the few output pixels whose centres lie in the i-th
+// of a group of the frame's pixels, so that samples are loaded as the gather loads them. Included
+// once per target by taa_simd.cpp.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::taa {
 namespace HWY_NAMESPACE {
 
-/// Vectors are handled in blocks of 128 bits, 8 lanes: neighbouring output pixels lie closer than
-/// neighbouring samples, so that a block finds all of its samples among 8 of a row.
-constexpr int kBlockLanes = 8;
-constexpr int kBlocks = kHalves / kBlockLanes;
-
-template <class D>
-HWY_INLINE hn::Vec<D> fromBlocks(D d, const int16_t* const* blocks) {
-    if constexpr (hn::MaxLanes(D()) <= kBlockLanes) {
-        return hn::LoadU(d, blocks[0]);
-    } else {
-        const hn::Half<D> half;
-        return hn::Combine(d, fromBlocks(half, blocks + hn::MaxLanes(half) / kBlockLanes),
-                           fromBlocks(half, blocks));
-    }
-}
-/// Lanes of each block by their numbers 0 … 7.
-HWY_INLINE VS lanesOf(VS blocks, VS numbers) {
-    const hn::Repartition<uint8_t, DS> d8;
-    const VS bytes = hn::Add(hn::Mul(numbers, set(0x0202)), set(0x0100));
-    return hn::BitCast(DS(), hn::TableLookupBytes(hn::BitCast(d8, blocks), hn::BitCast(d8, bytes)));
-}
-
-/// Samples of a plane at places that differ from lane to lane.
-class Samples {
-  public:
-    /// `column` and `row` lie in the picture where `lanes`.
-    HWY_INLINE Samples(VS column, VS row, MS lanes, int width, int height, ptrdiff_t stride) {
-        const DS d;
-        column = hn::Min(hn::Max(column, zero()), set(width - 1));
-        row = hn::Min(hn::Max(row, zero()), set(height - 1));
-        numbers_ = hn::Sub(column, lanesOf(column, zero()));
-        const VS off =
-            hn::Or(hn::AndNot(set(kBlockLanes - 1), numbers_), hn::Xor(row, lanesOf(row, zero())));
-        close_ = !any(hn::And(lanes, hn::Ne(off, zero())));
-        alignas(64) int16_t columns[kHalves], rows[kHalves];
-        hn::Store(column, d, columns);
-        hn::Store(row, d, rows);
-        const int step = close_ ? kBlockLanes : 1;
-        for (int i = 0, n = 0; i < kHalves; i += step, ++n) {
-            at_[n] = rows[i] * stride + columns[i];
-        }
-    }
-    HWY_INLINE VS of(const int16_t* plane) const {
-        if (HWY_LIKELY(close_)) {
-            const int16_t* blocks[kBlocks];
-            for (int b = 0; b < kBlocks; ++b) {
-                blocks[b] = plane + at_[b];
-            }
-            return lanesOf(fromBlocks(DS(), blocks), numbers_);
-        }
-        return gather(plane);
-    }
-
-  private:
-    HWY_NOINLINE VS gather(const int16_t* plane) const {
-        alignas(64) int16_t found[kHalves];
-        for (int i = 0; i < kHalves; ++i) {
-            found[i] = plane[at_[i]];
-        }
-        return hn::Load(DS(), found);
-    }
-
-    VS numbers_;             ///< lanes of their block, from its first one's sample on
-    bool close_;             ///< all of each block's lie within 8 samples of a row
-    ptrdiff_t at_[kHalves];  ///< of each block's first lane; or of each lane
-};
-
-/// The output pixels of a tile's columns.
+/// The output pixels of a tile's columns, by their number within the frame's pixel.
 struct OutputColumns {
-    static constexpr int kMost = (kMaxUpscale * (kTileSize + 1) + kMaxHalves + 8) / 8 * 8;
-    int first = 0, end = 0;
-    alignas(64) int16_t number[kMost];  ///< of the frame's pixel, from its block's first one on
-    alignas(64) int16_t offset[kMost];  ///< from that pixel's centre, 1/256 pixel of the frame
-    int16_t base[kMost / kBlockLanes];  ///< of a block's first one: the frame's pixel in the tile
+    static constexpr int kPad = kTileSize + kMaxHalves;
+    alignas(64) int16_t offset[kMaxUpscale][kPad];  ///< from its centre, 1/256 pixel of the frame
+    alignas(64) int16_t used[kMaxUpscale][kPad];    ///< −1: there is such an output pixel; else 0
+    int first[kPad];                                ///< first output pixel
+    int most = 0;                                   ///< in any pixel
 
-    OutputColumns(const upscale::Job& job, int tile_x0, int first_output, int end_output)
-        : first(first_output), end(end_output) {
-        for (int i = 0; i < kMost; ++i) {
-            const int x = std::min(first + i, end - 1);
-            const int pixel = job.x.pixelOf(x);
-            if (i % kBlockLanes == 0) {
-                base[i / kBlockLanes] = int16_t(pixel - tile_x0);
-            }
-            number[i] = int16_t(pixel - tile_x0 - base[i / kBlockLanes]);
-            offset[i] = int16_t(job.x.toFrame(job.x.offsetOf(x, pixel)));
-            if (first + i > end + kMaxHalves) {
-                break;
+    OutputColumns(const upscale::Job& job, const TileRect& tile) {
+        for (int i = 0; i < kPad; ++i) {
+            const int pixel = std::min(tile.x0 + i, tile.x1 - 1);
+            first[i] = job.x.firstOf(pixel);
+            const int count = tile.x0 + i < tile.x1 ? job.x.firstOf(pixel + 1) - first[i] : 0;
+            most = std::max(most, count);
+            for (int p = 0; p < kMaxUpscale; ++p) {
+                used[p][i] = p < count ? int16_t(-1) : int16_t(0);
+                offset[p][i] = p < count
+                                   ? int16_t(job.x.toFrame(job.x.offsetOf(first[i] + p, pixel)))
+                                   : int16_t(0);
             }
         }
     }
 };
 
-/// Values of a row of the frame's pixels in a tile.
-struct PixelRow {
-    alignas(64) int16_t of[kTileSize + kMaxHalves];
+/// One sample for each lane, loaded in as few pieces as they lie in.
+struct Pieces {
+    struct Piece {
+        ptrdiff_t at;  ///< of lane 0
+        MS lanes;
+    };
+    Piece of[kHalves];
+    int count = 0;
 
-    HWY_INLINE void store(int i, VS v) { hn::Store(v, DS(), of + i); }
+    /// Samples in the picture; some lane must be set.
+    HWY_INLINE Pieces(VS column, VS row, MS lanes, ptrdiff_t stride) {
+        forClusters(hn::Sub(column, hn::Iota(DS(), 0)), row, lanes, [&](int x, int y, MS some) {
+            of[count++] = {y * stride + x, some};
+        });
+    }
+    HWY_INLINE VS fetch(const int16_t* plane) const {
+        VS v = load(plane + of[0].at);
+        for (int i = 1; i < count; ++i) {
+            v = hn::IfThenElse(of[i].lanes, load(plane + of[i].at), v);
+        }
+        return v;
+    }
 };
 
-/// A group of a row's output pixels, `i` from the tile's first one on.
-struct OutputGroup {
-    const OutputColumns& columns;
-    int i;
-    VS number;
+/// What an axis has to say about samples near the places: see upscale_rules.h.
+struct AxisSite {
+    VS number;  ///< the sample's column or row
+    VS place;   ///< from the output pixel's centre, 1/64 output pixel
+    VS kernel;  ///< axisKernel()
+    VS tent;    ///< 256 at the centre, 0 a sample away
+};
+HWY_INLINE AxisSite siteAt(VS number, VS distance_fx8, int ratio_fx8) {
+    AxisSite site;
+    const VS e = hn::MulHigh(hn::ShiftLeft<6>(distance_fx8), set(4 * ratio_fx8));
+    const VS scaled = hn::Add(hn::Mul(hn::Sub(set(205), hn::Abs(e)), set(53)), set(256));
+    const VS place = hn::ShiftRight<2>(e);
+    site.number = number;
+    site.place = hn::Max(hn::Min(place, set(upscale::kFarthest)), set(-upscale::kFarthest));
+    site.kernel = hn::Min(hn::Max(hn::ShiftRight<9>(scaled), zero()), set(kAxisWeight));
+    site.tent = hn::Sub(set(256), hn::Abs(distance_fx8));
+    return site;
+}
+/// The nearest sample to a place at `whole` and `part_fx8`, −512 … 511.
+HWY_INLINE AxisSite nearestSite(VS whole, VS part_fx8, int ratio_fx8) {
+    const VS rounded = hn::Add(part_fx8, set(128));
+    return siteAt(hn::Add(whole, hn::ShiftRight<8>(rounded)),
+                  hn::Sub(set(128), hn::And(rounded, set(255))), ratio_fx8);
+}
+/// The one before (0) or after it (1).
+HWY_INLINE AxisSite besideSite(VS whole, VS part_fx8, int which, int ratio_fx8) {
+    return siteAt(hn::Add(whole, hn::Add(hn::ShiftRight<8>(part_fx8), set(which))),
+                  hn::Sub(set(which * 256), hn::And(part_fx8, set(255))), ratio_fx8);
+}
 
-    HWY_INLINE OutputGroup(const OutputColumns& c, int first) : columns(c), i(first) {
-        number = hn::LoadU(DS(), columns.number + i);
-    }
-    /// The values of the pixels that hold them.
-    HWY_INLINE VS spread(const PixelRow& row) const {
-        const int16_t* blocks[kBlocks];
-        for (int b = 0; b < kBlocks; ++b) {
-            blocks[b] = row.of + columns.base[i / kBlockLanes + b];
+/// The samples that count for a lane's output pixels.
+struct OutputTaps {
+    static constexpr int kMost = kMaxUpscaleRing + 4;
+    VS weight[kMost], ex[kMost], ey[kMost], behind[kMost];
+    VS colour[3][kMost];
+    int count;
+
+    HWY_INLINE void add(VS w, VS x, VS y, VS back, const SlotIn& slot, const Pieces& pieces) {
+        weight[count] = w;
+        ex[count] = x;
+        ey[count] = y;
+        behind[count] = back;
+        for (int c = 0; c < 3; ++c) {
+            colour[c][count] = pieces.fetch(slot.colour[c]);
         }
-        return lanesOf(fromBlocks(DS(), blocks), number);
-    }
-    HWY_INLINE MS spreadMask(const PixelRow& row) const { return hn::Ne(spread(row), zero()); }
-    /// The first and last of those pixels.
-    int firstPixel() const { return columns.base[i / kBlockLanes]; }
-    int lastPixel() const {
-        const int last = i + kHalves - 1;
-        return columns.base[last / kBlockLanes] + columns.number[last];
+        ++count;
     }
 };
 
