@@ -217,8 +217,9 @@ void Session::State::report(Slot& slot, bool worked) {
     const Pane& pane = *slot.pane;
     PaneReport& report = slot.report;
     report.times = pane.times();
-    report.total_ms = report.times.transform_bin_ms + report.times.raster_ms + report.times.taa_ms +
-                      report.times.output_ms;
+    const StageTimes& times = report.times;
+    report.total_ms = times.transform_bin_ms + times.raster_ms + times.light_ms + times.denoise_ms +
+                      times.taa_ms + times.output_ms;
     report.counters = worked ? pane.counters() : RasterCounters{};
     report.at_rest = pane.atRest();
     report.frames = film.lastFrame() - pane.firstFrame() + 1;

@@ -113,6 +113,14 @@ Scene frozen(Scene scene) {
     for (Track<double>& intensity : scene.lights.point_intensity) {
         hold(intensity);
     }
+    for (SceneSphere& sphere : scene.lights.spheres) {
+        hold(sphere.position);
+        hold(sphere.intensity);
+    }
+    for (SceneRectangle& rectangle : scene.lights.rectangles) {
+        hold(rectangle.centre);
+        hold(rectangle.intensity);
+    }
     holdCamera(scene);
     scene.cuts.clear();
     return scene;

@@ -27,6 +27,7 @@ struct AtlasOptions {
 
 struct ChartOptions {
     std::vector<std::string> scenes;  ///< FILE.obj, FILE.json or builtin:NAME
+    std::string lights;               ///< scene file that lights them; empty: their own
     std::string output;               ///< folder, made when it is not there
     std::string cache;                ///< folder; empty: the user's
     Size resolution{640, 360};

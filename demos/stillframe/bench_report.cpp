@@ -144,11 +144,19 @@ std::string timesLine(const char* name, const std::vector<double>& times_ms) {
     return formatted("  %-11s %9.3f %9.3f %9.3f", name, s.min, s.median, s.p95);
 }
 
+bool isOfLight(const StageColumn& stage) {
+    return stage.time_ms == &StageTimes::light_ms || stage.time_ms == &StageTimes::denoise_ms;
+}
+
+/// Stages of sampled light stand where there is some.
 std::string stageLines(const BenchResult& result, const MachineLimits& limits) {
     std::string lines = formatted("  %-11s %9s %9s %9s %9s %8s %8s\n", "ms", "min", "median", "p95",
                                   "MB", "GB/s", "of copy");
     for (size_t i = 0; i < kStageColumns.size(); ++i) {
         const std::vector<double> times_ms = timesOf(result, kStageColumns[i].time_ms);
+        if (isOfLight(kStageColumns[i]) && statisticsOf(times_ms).p95 == 0) {
+            continue;
+        }
         lines += timesLine(kStageColumns[i].name, times_ms);
         const double rate = gbPerSecond(result.bytes[i], statisticsOf(times_ms).median);
         if (rate > 0) {

@@ -67,6 +67,8 @@ StageBytes compulsoryBytes(const SceneSize& scene, const FrameResult& result,
             scene.triangles * kIndexBytes,
             0,
             all * kPlaneBytes + pixels.moving * kMotionBytes + shaded * kTexelBytes,
+            0,  // light: rays go where they go
+            0,  // denoise: how often a plane is read is a matter of the method
             pixels.moving * kMotionTaaBytes + pixels.unfinished * kStillTaaBytes,
             all * kOutputBytes};
 }

@@ -14,10 +14,12 @@ struct StageColumn {
     const char* name;
     double StageTimes::*time_ms;
 };
-constexpr std::array<StageColumn, 6> kStageColumns{{{"transform", &StageTimes::transform_ms},
+constexpr std::array<StageColumn, 8> kStageColumns{{{"transform", &StageTimes::transform_ms},
                                                     {"bin", &StageTimes::bin_ms},
                                                     {"visibility", &StageTimes::visibility_ms},
                                                     {"shade", &StageTimes::shade_ms},
+                                                    {"light", &StageTimes::light_ms},
+                                                    {"denoise", &StageTimes::denoise_ms},
                                                     {"taa", &StageTimes::taa_ms},
                                                     {"output", &StageTimes::output_ms}}};
 /// One number per stage.

@@ -20,6 +20,9 @@ namespace {
 /// A still segment has one reference only, so it may be a better one.
 constexpr int kStillSampleFactor = 4;
 
+/// Among allModes(), behind raw and fxaa.
+constexpr size_t kFirstPreset = 2;
+
 /// A scene on the chart. Its segments point into it, so it stays where it was made.
 struct ChartScene {
     std::string name;
@@ -30,7 +33,7 @@ Outcome<void> openScenes(const ChartOptions& options, std::list<ChartScene>& sce
     const std::filesystem::path cache =
         options.cache.empty() ? usersCacheFolder() : std::filesystem::path(options.cache);
     for (const std::string& text : options.scenes) {
-        auto opened = openScene(text, cache);
+        auto opened = openScene(text, cache, options.lights);
         if (!opened) {
             return tl::make_unexpected(opened.error());
         }
@@ -61,8 +64,17 @@ std::vector<ChartSegment> segmentsOf(const std::list<ChartScene>& scenes,
     return segments;
 }
 
-std::vector<Mode> chartModes() {
+/// Where light is sampled, also what is not denoised.
+std::vector<Mode> chartModes(const Scene& scene) {
     std::vector<Mode> modes = allModes();
+    if (scene.lights.sampled()) {
+        for (const size_t i : {size_t{0}, kFirstPreset}) {
+            Mode noisy = modes[i];
+            noisy.name += ":denoise=off";
+            noisy.denoise = Denoise::off;
+            modes.push_back(std::move(noisy));
+        }
+    }
     for (int samples : {2, 4, 8, 16}) {
         modes.push_back({.name = "ssaa:" + std::to_string(samples),
                          .anti_aliasing = AntiAliasing::ssaa,
@@ -78,7 +90,6 @@ std::vector<int> threadCounts() {
 
 Outcome<ChartReport> measure(const std::vector<ChartSegment>& segments, const ChartOptions& options,
                              const FileCache& cache) {
-    const std::vector<Mode> modes = chartModes();
     const std::vector<int> threads = threadCounts();
     int steps = 0;
     for (const ChartSegment& segment : segments) {
@@ -88,8 +99,8 @@ Outcome<ChartReport> measure(const std::vector<ChartSegment>& segments, const Ch
     int done = 0;
     ChartReport report{options.resolution.width, options.resolution.height, options.frames, {}};
     for (const ChartSegment& segment : segments) {
-        auto points =
-            measureSegment(segment, modes, threads, cache, [&] { progress.show(++done); });
+        auto points = measureSegment(segment, chartModes(*segment.content), threads, cache,
+                                     [&] { progress.show(++done); });
         if (!points) {
             return tl::make_unexpected(points.error());
         }

@@ -27,6 +27,12 @@ void addLaboratoryOptions(CLI::App& command, Options& o) {
     addQuiet(command, o.quiet);
 }
 
+void addLights(CLI::App& command, std::string& lights) {
+    command
+        .add_option("--lights", lights, "Scene file whose lights and background models are given")
+        ->type_name("FILE");
+}
+
 }  // namespace
 
 Subcommand declareAtlas(CLI::App& app) {
@@ -47,10 +53,7 @@ Subcommand declareAtlas(CLI::App& app) {
                      "FILE.obj, FILE.json or builtin:NAME as a further case of the suite of\n"
                      "noise, standing still")
         ->type_name("SCENE");
-    atlas
-        ->add_option("--lights", o->lights,
-                     "Scene file whose lights and background the models are given")
-        ->type_name("FILE");
+    addLights(*atlas, o->lights);
     atlas
         ->add_option("--presets", o->presets,
                      "Presets, raw, fxaa and ssaa:N with commas; default all but ssaa, or\n"
@@ -80,6 +83,7 @@ Subcommand declareChart(CLI::App& app) {
     chart->add_option("SCENE", o->scenes, "FILE.obj, FILE.json or builtin:NAME; one or several")
         ->required()
         ->type_name("");
+    addLights(*chart, o->lights);
     addLaboratoryOptions(*chart, *o);
     addSize(*chart, o->resolution, "Default 640x360");
     chart->add_option("--frames", o->frames, "Of each segment, default 64")

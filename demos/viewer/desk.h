@@ -14,7 +14,7 @@ namespace still::viewer {
 struct TimeHistory {
     static constexpr size_t kLength = 120;
     static constexpr size_t kStages =
-        6;  ///< transform and bin, raster, taa, output, the rest, panels
+        7;  ///< transform and bin, raster, light, taa, output, the rest, panels
 
     std::array<std::array<float, kLength>, kStages> stage_ms{};  ///< oldest first
     double frame_ms = 0;  ///< running mean, from one drawn frame to the next

@@ -54,6 +54,7 @@ struct Stage {
 constexpr std::array<Stage, TimeHistory::kStages> kStages{{
     {"transform, bin", IM_COL32(120, 170, 255, 255)},
     {"raster", IM_COL32(90, 210, 140, 255)},
+    {"light, denoiser", IM_COL32(235, 235, 120, 255)},
     {"taa", IM_COL32(255, 190, 80, 255)},
     {"output", IM_COL32(240, 120, 180, 255)},
     {"views, overlays", IM_COL32(170, 140, 240, 255)},

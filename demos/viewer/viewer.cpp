@@ -172,13 +172,15 @@ void Viewer::takeTimes(double draw_ms, double panels_ms) {
         const StageTimes& times = session_.report(pane).times;
         sum.transform_bin_ms += times.transform_bin_ms;
         sum.raster_ms += times.raster_ms;
+        sum.light_ms += times.light_ms + times.denoise_ms;
         sum.taa_ms += times.taa_ms;
         sum.output_ms += times.output_ms;
     }
-    const double stages_ms = sum.transform_bin_ms + sum.raster_ms + sum.taa_ms + sum.output_ms;
+    const double stages_ms =
+        sum.transform_bin_ms + sum.raster_ms + sum.light_ms + sum.taa_ms + sum.output_ms;
     desk_.times.add(
-        {float(sum.transform_bin_ms), float(sum.raster_ms), float(sum.taa_ms), float(sum.output_ms),
-         float(std::max(draw_ms - stages_ms, 0.0)), float(panels_ms)},
+        {float(sum.transform_bin_ms), float(sum.raster_ms), float(sum.light_ms), float(sum.taa_ms),
+         float(sum.output_ms), float(std::max(draw_ms - stages_ms, 0.0)), float(panels_ms)},
         draw_ms + panels_ms);
     // What stands still is finished at its own pace, and costs less with every frame.
     if (settings_.keeps_fps && desk_.keep_fps && moving_) {
