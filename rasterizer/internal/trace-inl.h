@@ -144,8 +144,7 @@ HWY_INLINE uint32_t blockMask(const TriangleBlock& block, const TraceRay& ray, f
 }  // namespace
 
 TraceKernels traceHere() {
-    // Packets of four gain nothing over rays that take turns.
-    return {occludedRays, kPacket >= 8 ? occludedPackets : occludedRays, closestOfRays};
+    return {occludedRays, occludedPackets, closestOfRays};
 }
 
 }  // namespace HWY_NAMESPACE
