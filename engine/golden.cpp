@@ -146,7 +146,7 @@ void comparePictures(const std::filesystem::path& file, const StageHash& recorde
     const ImageView<const Rgb8> b = std::as_const(difference.actual).view();
     difference.pixels = countDifferences(a, b, {0, 0, 0, 0, a.width, a.height}, difference);
     if (!difference.stages.tiles.empty()) {
-        countDifferences(a, b, tileRectangle(difference.stages.tiles.front(), a.width, a.height),
+        countDifferences(a, b, tileRectangle(difference, difference.stages.tiles.front()),
                          difference);
     }
     difference.psnr_db = psnrDb(pixelError(a, b));
@@ -159,8 +159,7 @@ std::string placeText(const FrameDifference& difference) {
     if (stages.tiles.empty()) {
         return text;
     }
-    const TileRectangle tile =
-        tileRectangle(stages.tiles.front(), difference.width, difference.height);
+    const TileRectangle tile = tileRectangle(difference, stages.tiles.front());
     text += ", in tile (" + std::to_string(tile.tile_x) + ", " + std::to_string(tile.tile_y) +
             "), pixels " + std::to_string(tile.x) + "," + std::to_string(tile.y) + " to " +
             std::to_string(tile.x + tile.width - 1) + "," +
@@ -206,6 +205,8 @@ class Comparison {
         first.frame = actual.frame;
         first.width = record_.width;
         first.height = record_.height;
+        first.frame_width = result.gbuffer->width();
+        first.frame_height = result.gbuffer->height();
         first.stages = std::move(*stages);
         first.actual = copyOf(result.output);
         comparePictures(pictureFile(manifest_, case_.name, actual.frame),
@@ -283,6 +284,22 @@ TileRectangle tileRectangle(int tile, int width, int height) {
     r.y = r.tile_y * kTileSize;
     r.width = std::min(kTileSize, width - r.x);
     r.height = std::min(kTileSize, height - r.y);
+    return r;
+}
+
+TileRectangle tileRectangle(const FrameDifference& difference, int tile) {
+    const int width = difference.width, height = difference.height;
+    const int frame_width = difference.frame_width, frame_height = difference.frame_height;
+    if (difference.stages.stage >= Stage::linear || frame_width == width) {
+        return tileRectangle(tile, width, height);
+    }
+    TileRectangle r = tileRectangle(tile, frame_width, frame_height);
+    const int right = ((r.x + r.width) * width + frame_width - 1) / frame_width;
+    const int bottom = ((r.y + r.height) * height + frame_height - 1) / frame_height;
+    r.x = r.x * width / frame_width;
+    r.y = r.y * height / frame_height;
+    r.width = right - r.x;
+    r.height = bottom - r.y;
     return r;
 }
 

@@ -105,6 +105,7 @@ TileRectangle tileRectangle(int tile, int width, int height);
 struct FrameDifference {
     int frame = 0;
     int width = 0, height = 0;
+    int frame_width = 0, frame_height = 0;  ///< of the planes before Stage::linear
     StageDifference stages;
     Image<Rgb8> actual;
     Image<Rgb8> expected;  ///< empty when the recorded picture is not there, or is another one
@@ -114,6 +115,9 @@ struct FrameDifference {
     int first_x = -1, first_y = -1;
     double psnr_db = 0;  ///< infinite when pictures are equal
 };
+
+/// The picture's pixels that one of `difference.stages.tiles` covers.
+TileRectangle tileRectangle(const FrameDifference& difference, int tile);
 
 struct CaseVerdict {
     std::string name;

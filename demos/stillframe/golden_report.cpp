@@ -25,8 +25,7 @@ const char* wordOf(Finding finding) {
 Json firstJson(const golden::FrameDifference& first) {
     Json json{{"frame", first.frame}, {"stage", name(first.stages.stage)}};
     if (!first.stages.tiles.empty()) {
-        const auto tile =
-            golden::tileRectangle(first.stages.tiles.front(), first.width, first.height);
+        const auto tile = golden::tileRectangle(first, first.stages.tiles.front());
         json["tile"] = {tile.tile_x, tile.tile_y};
         json["rectangle"] = {tile.x, tile.y, tile.width, tile.height};
     } else {
@@ -58,7 +57,7 @@ Json pageJson(const VerifiedCase& verified) {
         json["height"] = first->height;
         json["rectangles"] = Json::array();
         for (const int tile : first->stages.tiles) {
-            const auto r = golden::tileRectangle(tile, first->width, first->height);
+            const auto r = golden::tileRectangle(*first, tile);
             json["rectangles"].push_back({r.x, r.y, r.width, r.height});
         }
     }

@@ -1,6 +1,7 @@
 // Recordings as text: "stillframe golden 1", "size WIDTHxHEIGHT", then a line for each stage of
 // each frame, "FRAME STAGE HASH TILES", TILES being eight hexadecimal digits each.
 
+#include <algorithm>
 #include <charconv>
 
 #include "engine/golden.h"
@@ -40,6 +41,7 @@ class RecordReader {
     int number_ = 0;
     std::string error_;
     Record record_;
+    size_t frame_tiles_ = 0;  ///< of planes before Stage::linear, which may be smaller
 };
 
 bool RecordReader::refuse(std::string_view expected) {
@@ -90,8 +92,8 @@ bool RecordReader::readStage(int stage) {
     const std::string_view stage_name = takeWord(rest);
     const auto whole = numberFrom<uint64_t>(takeWord(rest), 16);
     const std::string_view tiles = takeWord(rest);
-    const int across = (record_.width + kTileSize - 1) / kTileSize;
-    const int down = (record_.height + kTileSize - 1) / kTileSize;
+    const auto along = [](int pixels) { return size_t(pixels + kTileSize - 1) / kTileSize; };
+    const size_t most = along(record_.width) * along(record_.height);
     if (stage == 0) {
         const bool later =
             record_.frames.empty() || (frame && *frame > record_.frames.back().frame);
@@ -100,11 +102,15 @@ bool RecordReader::readStage(int stage) {
         }
         record_.frames.push_back({*frame, {}});
     }
+    if (frame_tiles_ == 0) {
+        frame_tiles_ = std::clamp(tiles.size() / kTileDigits, size_t{1}, most);
+    }
+    const size_t tile_count = Stage(stage) < Stage::linear ? frame_tiles_ : most;
     Record::Frame& to = record_.frames.back();
     if (!frame || *frame != to.frame || stage_name != name(Stage(stage)) || !whole ||
-        !rest.empty() || tiles.size() != kTileDigits * size_t(across) * size_t(down)) {
+        !rest.empty() || tiles.size() != kTileDigits * tile_count) {
         return refuse("frame " + std::to_string(to.frame) + ", " + name(Stage(stage)) +
-                      ", a hash and hashes of " + std::to_string(across * down) + " tiles");
+                      ", a hash and hashes of " + std::to_string(tile_count) + " tiles");
     }
     StageHash& hash = to.stages[size_t(stage)];
     hash.whole = *whole;

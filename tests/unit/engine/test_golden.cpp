@@ -222,6 +222,20 @@ TEST_CASE("golden: tiles at the right and lower edge end with the picture", "[un
     CHECK((r.x == 128 && r.y == 64 && r.width == 22 && r.height == 6));
 }
 
+TEST_CASE("golden: tiles of smaller frames are told as the picture's pixels", "[unit][golden]") {
+    golden::FrameDifference difference;
+    difference.width = 150;
+    difference.height = 70;
+    difference.frame_width = 75;
+    difference.frame_height = 35;
+    difference.stages.stage = Stage::depth;
+    const golden::TileRectangle r = golden::tileRectangle(difference, 1);
+    CHECK((r.tile_x == 1 && r.tile_y == 0));
+    CHECK((r.x == 128 && r.y == 0 && r.width == 22 && r.height == 70));
+    difference.stages.stage = Stage::output;
+    CHECK(golden::tileRectangle(difference, 5).tile_y == 1);
+}
+
 TEST_CASE("golden: verify() is true as long as every bit is as recorded", "[unit][golden]") {
     const TempFolder folder;
     folder.write("golden.json",
@@ -249,6 +263,19 @@ TEST_CASE("golden: verify() is true as long as every bit is as recorded", "[unit
     std::ostringstream stream;
     stream << changed;
     CHECK(stream.str() == changed.message);
+}
+
+TEST_CASE("golden: upscaled pictures are recorded and verified like others", "[unit][golden]") {
+    const TempFolder folder;
+    folder.write("golden.json", "{\"cases\": [" + kCase +
+                                    R"(, "frames": 3, "anti_aliasing": "taa:performance"}]})");
+    recordAll(folder.path(), withBall(-1));
+    CHECK(golden::verify(folder.path(), withBall(-1)));
+    const golden::Verdict changed = golden::verify(folder.path(), withBall(2));
+    CHECK_FALSE(changed);
+    CHECK(
+        changed.message.starts_with("a: frame 2: color is the first stage that differs, in tile "
+                                    "(0, 0), pixels 0,0 to 69,39"));
 }
 
 TEST_CASE("golden: verify() tells what keeps it from comparing", "[unit][golden]") {
