@@ -139,6 +139,44 @@ bool isLit(const Scene& scene) {
     return c[0] > 0 || c[1] > 0 || c[2] > 0;
 }
 
+/// In the words of scene files.
+std::string shadowOf(const SceneLights& lights) {
+    const bool mapped = lights.sun_shadow == SunShadow::mapped;
+    return lights.sun_shadow == SunShadow::none ? "none" : mapped ? "map" : "traced";
+}
+std::string ambientOf(const SceneLights& lights) {
+    switch (lights.ambient_light) {
+        case AmbientLight::screen_occlusion:
+            return "screen occlusion";
+        case AmbientLight::traced_occlusion:
+            return "traced occlusion";
+        case AmbientLight::bounce:
+            return "bounce";
+        default:
+            return "plain";
+    }
+}
+
+/// What is there, of sampled light only then.
+std::string lightsText(const Scene& scene) {
+    const SceneLights& lights = scene.lights;
+    std::string text = isLit(scene) ? "sun, " : "";
+    if (isLit(scene) && lights.sun_shadow != SunShadow::none) {
+        text = "sun with " +
+               std::string(lights.sun_shadow == SunShadow::mapped ? "mapped" : "traced") +
+               " shadows, ";
+    }
+    text += std::to_string(lights.points.size()) + " points";
+    const auto add = [&](size_t count, const char* what) {
+        text += count == 0 ? "" : ", " + std::to_string(count) + " " + what;
+    };
+    add(lights.spheres.size(), "spheres");
+    add(lights.rectangles.size(), "rectangles");
+    text +=
+        lights.ambient_light == AmbientLight::plain ? "" : ", ambient with " + ambientOf(lights);
+    return text + (lights.sampled() ? " (sampled)" : "");
+}
+
 Json pointJson(const glm::dvec3& p) {
     return {p.x, p.y, p.z};
 }
@@ -162,7 +200,13 @@ std::string infoJson(const std::string& name, const Scene& scene, const SceneInf
     if (info.bounds.valid) {
         json["bounds"] = {{"min", pointJson(info.bounds.min)}, {"max", pointJson(info.bounds.max)}};
     }
-    json["lights"] = {{"sun", isLit(scene)}, {"points", scene.lights.points.size()}};
+    json["lights"] = {{"sun", isLit(scene)},
+                      {"sun_shadow", shadowOf(scene.lights)},
+                      {"ambient", ambientOf(scene.lights)},
+                      {"points", scene.lights.points.size()},
+                      {"spheres", scene.lights.spheres.size()},
+                      {"rectangles", scene.lights.rectangles.size()},
+                      {"sampled", scene.lights.sampled()}};
     json["camera"] = info.camera;
     json["views"] = Json::array();
     for (const NamedView& view : scene.views) {
@@ -235,8 +279,7 @@ std::string infoLines(const std::string& name, const Scene& scene, const SceneIn
         const glm::dvec3& b = info.bounds.max;
         lines += line("bounds", formatted("%g %g %g to %g %g %g", a.x, a.y, a.z, b.x, b.y, b.z));
     }
-    lines += line("lights", std::string(isLit(scene) ? "sun, " : "") +
-                                count(scene.lights.points.size()) + " points");
+    lines += line("lights", lightsText(scene));
     lines += line("camera", info.camera);
     std::string views;
     for (const NamedView& view : scene.views) {

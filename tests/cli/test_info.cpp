@@ -61,6 +61,8 @@ TEST_CASE("info: a scene at rest says so, and all built-in scenes can be told of
     CHECK(has(shell(folder.path(), "stillframe info builtin:triangle --json").out,
               "\"still\": true"));
     CHECK(has(shell(folder.path(), "stillframe info builtin:lights").out, "points"));
+    CHECK(has(shell(folder.path(), "stillframe info builtin:cornell").out,
+              "0 points, 1 rectangles, ambient with bounce (sampled)"));
     CHECK(has(shell(folder.path(), "stillframe info builtin:fence").out, "alpha test"));
     const Ran pipe = shell(folder.path(),
                            "printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' | stillframe info -");
