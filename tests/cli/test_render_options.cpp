@@ -111,6 +111,41 @@ TEST_CASE("render: colours under alpha are those of the surface, also at edges",
     }
 }
 
+TEST_CASE("render: --lights takes light and background of a scene file, and nothing else of it",
+          "[cli]") {
+    const TempFolder folder;
+    folder.write("t.obj", kTetrahedron);
+    const std::string light = R"("lights": {"ambient": {"colour": [0.5, 0.25, 0]}},
+                                 "background": {"srgb": [0, 0, 1]})";
+    folder.write("whole.json", R"({"obj": "t.obj", )" + light + "}");
+    folder.write("light.json", R"({"obj": "no such file", )" + light + "}");
+    render(folder, "whole.json -o a.png" + kSmall);
+    render(folder, "t.obj --lights light.json -o b.png" + kSmall);
+    CHECK(shell(folder.path(), "stillframe compare a.png b.png --exact").code == 0);
+    CHECK(picture(folder, "b.png").at(0, 0) == Rgb8{0, 0, 255});
+
+    const Ran missing = shell(folder.path(), "stillframe render t.obj --lights none.json --hash");
+    CHECK(missing.code == 3);
+    CHECK(missing.err == "stillframe: none.json: no such file\n");
+    folder.write("dark.json", "{}");
+    const Ran dark = shell(folder.path(), "stillframe render t.obj --lights dark.json --hash");
+    CHECK(dark.code == 3);
+    CHECK(dark.err ==
+          "stillframe: dark.json: /: expected an object with \"light\" or \"lights\"\n");
+}
+
+TEST_CASE("render: --denoise off leaves the noise of sampled light, and other scenes as they are",
+          "[cli]") {
+    const TempFolder folder;
+    const auto hashes = [&](const std::string& scene, const std::string& denoise) {
+        return render(folder, scene + " --aa none --hash --denoise " + denoise + kSmall);
+    };
+    CHECK(hashes("builtin:cornell", "on") != hashes("builtin:cornell", "off"));
+    CHECK(hashes("builtin:cubes", "on") == hashes("builtin:cubes", "off"));
+    CHECK(shell(folder.path(), "stillframe render builtin:cornell --hash --denoise maybe").code ==
+          2);
+}
+
 TEST_CASE("render: a zoom by 2 shows twice the size, orthographic or not", "[cli]") {
     const TempFolder folder;
     folder.write("q.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");

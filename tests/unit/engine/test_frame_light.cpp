@@ -132,13 +132,21 @@ TEST_CASE("frame_light: light that goes out leaves the picture", "[unit][frame_l
     CHECK(meanRed(loop.render(9)) - unlit < 0.02 * (lit - unlit));
 }
 
-TEST_CASE("frame_light: pictures do not depend on whether their samples are asked for",
+TEST_CASE("frame_light: a finished picture rests, whether its samples are asked for or not",
           "[unit][frame_light]") {
     const Scene scene = stillScene();
     FrameSettings settings = settingsOf(AntiAliasing::taa);
-    const uint64_t expected = frameAlone(scene, settings, 120);
-    settings.fresh_gbuffer = true;
-    CHECK(frameAlone(scene, settings, 120) == expected);
+    constexpr int kFinished = 190;
+    const uint64_t finished = frameAlone(scene, settings, kFinished);
+    settings.fresh_gbuffer = GENERATE(false, true);
+    int stages = 0;
+    settings.clock_ms = [&stages] { return double(++stages); };
+    Workers workers(2);
+    FrameLoop loop(scene, settings, workers);
+    CHECK(hashOf(loop.render(kFinished)) == finished);
+    stages = 0;
+    CHECK(hashOf(loop.render(kFinished + 1)) == finished);
+    CHECK(stages == 0);
 }
 
 TEST_CASE("frame_light: sub-frames make the picture that as many frames make",
