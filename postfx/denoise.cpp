@@ -20,6 +20,7 @@ using denoising::FilterPlanes;
 using denoising::Job;
 using denoising::kChannels;
 using denoising::kParts;
+using denoising::Other;
 using denoising::Past;
 using denoising::TileRect;
 
@@ -63,6 +64,39 @@ struct PastImages {
         past.surface = surface.view().data;
         past.depth = depth.view().data;
         return past;
+    }
+};
+
+struct OtherImages {
+    std::array<Image<float>, kChannels> light;
+    std::array<Image<float>, kParts> square;
+    std::array<Image<uint8_t>, kParts> count;
+    Image<uint16_t> surface;
+    Image<uint32_t> stored;
+
+    void resize(int width, int height) {
+        for (auto& image : light) {
+            image.resize(width, height);
+        }
+        for (size_t p = 0; p < kParts; ++p) {
+            square[p].resize(width, height);
+            count[p].resize(width, height);
+        }
+        surface.resize(width, height);
+        stored.resize(width, height);
+    }
+    Other pointers() {
+        Other other;
+        for (size_t c = 0; c < kChannels; ++c) {
+            other.light[c] = light[c].view().data;
+        }
+        for (size_t p = 0; p < kParts; ++p) {
+            other.square[p] = square[p].view().data;
+            other.count[p] = count[p].view().data;
+        }
+        other.surface = surface.view().data;
+        other.stored = stored.view().data;
+        return other;
     }
 };
 
@@ -197,6 +231,8 @@ struct Denoiser::State {
     int width = 0, height = 0;
     int tiles_x = 0, tiles = 0;
     std::array<PastImages, 2> past;
+    OtherImages other;
+    uint32_t frame = 0;
     int cursor = 0;
     bool has_past = false;
     std::array<FilterImages, 2> filtered;
@@ -236,6 +272,7 @@ void Denoiser::State::resize(int new_width, int new_height) {
     for (PastImages& images : past) {
         images.resize(width, height);
     }
+    other.resize(width, height);
     for (FilterImages& images : filtered) {
         images.resize(width, height);
     }
@@ -287,6 +324,8 @@ Job Denoiser::State::makeJob(const GBuffer& gbuffer, const LightPlanes& noisy, b
     job.step[0] = step[0].view().data;
     job.step[1] = step[1].view().data;
     job.has_past = has_past;
+    job.frame = frame;
+    job.other = other.pointers();
     job.before = past[size_t(1 - cursor)].pointers();
     job.now = past[size_t(cursor)].pointers();
     job.first = filtered[0].pointers();
@@ -325,6 +364,7 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
         s.noteChange(frame.change, workers);
     }
     s.cursor = 1 - s.cursor;
+    ++s.frame;
     const Job job = s.makeJob(gbuffer, noisy, changed);
     const denoising::Kernels kernels = denoising::kernels(simd);
     s.eachTile(workers, [&](int, const TileRect& rect) { kernels.guides(job, rect); });

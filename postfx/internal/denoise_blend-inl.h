@@ -108,7 +108,7 @@ struct FoundLanes {
 /// What the past must be like.
 struct WantedLanes {
     VI surface, depth, tolerance;
-    VF normal[3];
+    VF normal[3], cosine;
 };
 
 HWY_INLINE WantedLanes wantedLanes(const Job& job, ptrdiff_t at) {
@@ -119,7 +119,11 @@ HWY_INLINE WantedLanes wantedLanes(const Job& job, ptrdiff_t at) {
     // pastTolerance()
     const VF steep = hn::Div(step, hn::Add(loadDepth(job.depth + at), set(1e-12f)));
     const VF slope = hn::Mul(hn::Min(steep, set(1.0f)), set(kSlopeFactor));
-    w.tolerance = hn::Add(setInt(kDepthTolerance), hn::ConvertTo(DI(), slope));
+    const VI tolerance = hn::Add(setInt(kDepthTolerance), hn::ConvertTo(DI(), slope));
+    const auto rests =
+        hn::Eq(hn::LoadU(DI(), reinterpret_cast<const int32_t*>(job.motion) + at), setInt(0));
+    w.tolerance = hn::IfThenElse(rests, setInt(65535), tolerance);
+    w.cosine = hn::IfThenElse(hn::RebindMask(DF(), rests), set(-2.0f), set(kPastCosine));
     for (int c = 0; c < 3; ++c) {
         w.normal[c] = load(job.now.normal[c] + at);
     }
@@ -135,7 +139,7 @@ HWY_INLINE MF fitLanes(const Job& job, const WantedLanes& w, ptrdiff_t from) {
     const VF cosine = hn::Add(hn::Add(hn::Mul(w.normal[0], load(past.normal[0] + from)),
                                       hn::Mul(w.normal[1], load(past.normal[1] + from))),
                               hn::Mul(w.normal[2], load(past.normal[2] + from)));
-    return hn::AndNot(hn::RebindMask(DF(), apart), hn::Ge(cosine, set(kPastCosine)));
+    return hn::AndNot(hn::RebindMask(DF(), apart), hn::Ge(cosine, w.cosine));
 }
 
 HWY_INLINE void addPastLanes(const Past& past, ptrdiff_t from, MF lanes, VF weight, FoundLanes& f) {

@@ -86,7 +86,7 @@ HWY_INLINE void filterGroup(const Job& job, const FilterPlanes& in, const Filter
         const VF blue = loadLight(in.light[3 * p + 2] + at);
         f.here[p] = luminanceLanes(red, green, blue);
         const VF sigma = hn::Sqrt(smoothVarianceLanes(job, in.variance[p], x, y, kEdge));
-        f.scale[p] = hn::Div(set(1.0f), multiplyAdd(set(kLeastSpan), set(kSigmas), sigma));
+        f.scale[p] = hn::Div(set(1.0f), multiplyAdd(set(kLeastSpan), set(kSigmas[p]), sigma));
         f.total[p] = set(kCentre);
         f.square[p] = hn::Mul(set(kCentre * kCentre), load(in.variance[p] + at));
         f.sum[3 * p] = hn::Mul(set(kCentre), red);

@@ -27,6 +27,16 @@ struct Past {
     uint16_t* depth = nullptr;     ///< logDepth16
 };
 
+/// The surface that a pixel at rest showed before the one that Past tells of: at an edge the
+/// samples hit now this one and now that one, and each keeps its light.
+struct Other {
+    float* light[kChannels] = {};
+    float* square[kParts] = {};
+    uint8_t* count[kParts] = {};
+    uint16_t* surface = nullptr;  ///< 0: none
+    uint32_t* stored = nullptr;   ///< Job::frame when it was put here
+};
+
 /// Of one part of the light in a block of the frame before: by what it has changed.
 struct BlockChange {
     float ratio = 1;   ///< light is this many times what it was …
@@ -50,8 +60,10 @@ struct Job {
     const uint16_t* depth_before = nullptr;
     const uint16_t* noisy[kChannels] = {};
     float* step[2] = {};  ///< of depth from pixel to pixel, on the pixel's surface
+    uint32_t frame = 0;   ///< counts
     bool has_past = false;
     Past before, now;
+    Other other;
     const BlockChange* change[kParts] = {};  ///< null: nothing changed
     int blocks_x = 0;
     FilterPlanes first;  ///< what the first pass of the filter reads

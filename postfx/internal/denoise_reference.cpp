@@ -25,6 +25,7 @@ struct Found {
 struct Wanted {
     int surface = 0, depth = 0, tolerance = 0;
     float normal[3] = {};
+    float cosine = kPastCosine;
 };
 
 bool fits(const Job& job, const Wanted& wanted, ptrdiff_t at) {
@@ -36,7 +37,7 @@ bool fits(const Job& job, const Wanted& wanted, ptrdiff_t at) {
     const float cosine = wanted.normal[0] * past.normal[0][at] +
                          wanted.normal[1] * past.normal[1][at] +
                          wanted.normal[2] * past.normal[2][at];
-    return cosine >= kPastCosine;
+    return cosine >= wanted.cosine;
 }
 
 void add(const Past& past, ptrdiff_t at, float weight, Found& found) {
@@ -76,6 +77,11 @@ Found findPast(const Job& job, int x, int y) {
     for (int c = 0; c < 3; ++c) {
         wanted.normal[c] = job.now.normal[c][at];
     }
+    const Wanted strict = wanted;
+    if (motion == Motion{}) {  // what its samples hit within the pixel is averaged
+        wanted.tolerance = 65535;
+        wanted.cosine = -2;
+    }
     const int px = x * 256 + motion.x_fx8, py = y * 256 + motion.y_fx8;
     const int ix = px >> 8, iy = py >> 8, fx = px & 255, fy = py & 255;
     int total = 0;
@@ -94,7 +100,7 @@ Found findPast(const Job& job, int x, int y) {
         const int nx = (px + 128) >> 8, ny = (py + 128) >> 8;
         for (int j = ny - 1; j <= ny + 1; ++j) {
             for (int i = nx - 1; i <= nx + 1; ++i) {
-                if (inside(job, i, j) && fits(job, wanted, j * job.stride + i)) {
+                if (inside(job, i, j) && fits(job, strict, j * job.stride + i)) {
                     add(job.before, j * job.stride + i, 1.0f, found);
                 }
             }
@@ -110,6 +116,46 @@ Found findPast(const Job& job, int x, int y) {
 int stillFor(const Job& job, ptrdiff_t at) {
     const bool rests = job.has_past && job.motion[at] == Motion{};
     return rests ? std::min(job.before.still[at] + 1, 255) : 0;
+}
+
+/// Whether the other surface was put aside since the pixel has stood still and its light is as it
+/// is.
+bool otherHolds(const Job& job, ptrdiff_t at, int still) {
+    const uint32_t past = job.frame - job.other.stored[at];
+    return job.other.surface[at] == job.now.surface[at] && past < uint32_t(still) &&
+           past <= job.before.age[0][at] && past <= job.before.age[1][at];
+}
+
+/// What the pixel showed a frame ago becomes the other surface, and the other one the past.
+void turn(const Job& job, ptrdiff_t at, int still, Found& found) {
+    const Other& other = job.other;
+    const Past& past = job.before;
+    const bool known = otherHolds(job, at, still);
+    if (known) {
+        for (int c = 0; c < kChannels; ++c) {
+            found.light[c] = other.light[c][at];
+        }
+        for (int p = 0; p < kParts; ++p) {
+            found.square[p] = other.square[p][at];
+            found.count[p] = float(other.count[p][at]);
+            found.age[p] = float(past.age[p][at]);
+        }
+        found.weight = 1;
+        found.exact = true;
+    }
+    if (past.surface[at] == 0) {
+        return;
+    }
+    for (int c = 0; c < kChannels; ++c) {
+        other.light[c][at] = past.light[c][at];
+    }
+    for (int p = 0; p < kParts; ++p) {
+        other.square[p][at] = past.square[p][at];
+        other.count[p][at] = past.count[p][at];
+        found.count[p] = known ? found.count[p] : std::min(found.count[p], kBorrowed);
+    }
+    other.surface[at] = past.surface[at];
+    other.stored[at] = job.frame;
 }
 
 void clear(const Job& job, ptrdiff_t at) {
@@ -135,8 +181,11 @@ void blendPixel(const Job& job, int x, int y) noexcept {
         clear(job, at);
         return;
     }
-    const Found found = findPast(job, x, y);
+    Found found = findPast(job, x, y);
     const int still = stillFor(job, at);
+    if (still > 0 && job.before.surface[at] != job.now.surface[at]) {
+        turn(job, at, still, found);
+    }
     int light_age = 255;
     for (int p = 0; p < kParts; ++p) {
         const BlockChange change = changeAt(job, p, x, y);
@@ -295,7 +344,7 @@ void filterPixel(const Job& job, const FilterPlanes& in, const FilterPlanes& out
         }
         here[p] = luminanceOf(in, p, at);
         scale[p] =
-            1.0f / (kSigmas * std::sqrt(smoothVariance(job, in.variance[p], x, y)) + kLeastSpan);
+            1.0f / (kSigmas[p] * std::sqrt(smoothVariance(job, in.variance[p], x, y)) + kLeastSpan);
         total[p] = kCentre;
         square[p] = kCentre * kCentre * in.variance[p][at];
         for (int c = 3 * p; c < 3 * p + 3; ++c) {

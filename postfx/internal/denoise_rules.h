@@ -28,6 +28,8 @@ constexpr int kLongestMoving = 32;
 /// and all but so many of them.
 constexpr int kYoungFrames = 8;
 constexpr int kYoungKept = 5;
+/// A past that a pixel at rest has from its neighbours is worth so many samples at most.
+constexpr float kBorrowed = 4.0f;
 /// Before so many samples variance comes from the surroundings.
 constexpr int kShort = 4;
 /// … of so many pixels on each side whose logDepth16 differs by at most this.
@@ -75,12 +77,13 @@ constexpr float kWindow[3] = {0.25f, 0.5f, 0.25f};
 constexpr float kCentre = 0.25f;
 /// The same of the window over which variance is averaged.
 constexpr float kSmooth[3] = {0.25f, 0.5f, 0.25f};
-/// Luminances may differ by so many standard deviations.
-constexpr float kSigmas = 7.0f;
+/// Luminances may differ by so many standard deviations, direct and indirect light: shadows of lamps
+/// have edges.
+constexpr float kSigmas[kParts] = {8.0f, 11.0f};
 /// … and by so much more, in units of the planes.
 constexpr float kLeastSpan = 1e-3f;
 /// Squared distance of normals at which nothing is taken.
-constexpr float kNormalReach = 0.12f;
+constexpr float kNormalReach = 0.3f;
 /// Distance from the pixel's plane at which nothing is taken, relative to the depth.
 constexpr float kPlaneReach = 0.01f;
 /// … or to the surface's slope.
