@@ -181,6 +181,23 @@ int noisyParts(const FilterPlanes& planes, ptrdiff_t stride, const TileRect& til
     return parts;
 }
 
+/// The parts of a tile's light of which some pixel has few samples.
+int freshParts(const Job& job, const TileRect& tile) {
+    int parts = 0;
+    for (int p = 0; p < kParts; ++p) {
+        bool fresh = false;
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            const ptrdiff_t at = y * job.stride + tile.x0;
+            for (int x = 0; x < tile.x1 - tile.x0; ++x) {
+                const int count = job.now.count[p][at + x];
+                fresh |= count > 0 && count < denoising::kFewSamples;
+            }
+        }
+        parts |= fresh ? 1 << p : 0;
+    }
+    return parts;
+}
+
 /// The parts that are not filtered, as they are.
 void copyParts(const FilterPlanes& in, const FilterPlanes& out, int parts, ptrdiff_t stride,
                const TileRect& tile) {
@@ -238,9 +255,9 @@ struct Denoiser::State {
     std::array<FilterImages, 2> filtered;
     std::array<Image<float>, 2> step;
     std::array<std::vector<BlockChange>, kParts> change;
-    std::vector<int> noisy_parts;         ///< of each tile
-    Image<uint8_t> light_age, least_age;  ///< of each pixel; of the 3×3 around it
-    std::vector<uint8_t> young;           ///< tiles with pixels of some age
+    std::vector<int> noisy_parts, fresh_parts;  ///< of each tile
+    Image<uint8_t> light_age, least_age;        ///< of each pixel; of the 3×3 around it
+    std::vector<uint8_t> young;                 ///< tiles with pixels of some age
     bool any_young = false;
 
     TileRect rectOf(int tile) const {
@@ -282,6 +299,7 @@ void Denoiser::State::resize(int new_width, int new_height) {
     light_age.resize(width, height);
     least_age.resize(width, height);
     noisy_parts.resize(size_t(tiles));
+    fresh_parts.resize(size_t(tiles));
     young.resize(size_t(tiles));
     has_past = false;
 }
@@ -339,9 +357,11 @@ void Denoiser::State::filter(const Job& job, const denoising::Kernels& kernels, 
         const FilterPlanes in = filtered[size_t(pass % 2)].pointers();
         const FilterPlanes out = filtered[size_t(1 - pass % 2)].pointers();
         eachTile(workers, [&](int tile, const TileRect& rect) {
-            const int parts = noisy_parts[size_t(tile)];
-            if (pass == 0) {
-                copyParts(in, out, parts, job.stride, rect);
+            const bool last = pass + 1 == denoising::kPasses;
+            const int noisy = noisy_parts[size_t(tile)];
+            const int parts = noisy & (last ? fresh_parts[size_t(tile)] : noisy);
+            if (pass == 0 || last) {
+                copyParts(in, out, pass == 0 ? noisy : parts | ~noisy, job.stride, rect);
             }
             if (parts != 0) {
                 kernels.filter(job, in, out, pass, parts, rect);
@@ -376,6 +396,7 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
     s.eachTile(workers, [&](int tile, const TileRect& rect) {
         kernels.variance(job, rect);
         s.noisy_parts[size_t(tile)] = noisyParts(job.first, job.stride, rect);
+        s.fresh_parts[size_t(tile)] = freshParts(job, rect);
         if (s.any_young) {
             leastAround(s.light_age.view(), s.least_age.view(), rect);
         }

@@ -26,8 +26,8 @@ constexpr int kLongest = 255;
 constexpr int kLongestMoving = 32;
 /// The first so many frames are still noisy: TAA forgets its sums of them as soon as they are over,
 /// and all but so many of them.
-constexpr int kYoungFrames = 8;
-constexpr int kYoungKept = 5;
+constexpr int kYoungFrames = 12;
+constexpr int kYoungKept = 7;
 /// A past that a pixel at rest has from its neighbours is worth so many samples at most.
 constexpr float kBorrowed = 4.0f;
 /// Before so many samples variance comes from the surroundings.
@@ -72,13 +72,15 @@ inline bool quiet(float variance, float luminance) {
 
 /// Passes of the filter; pass k takes every 2^k-th pixel.
 constexpr int kPasses = 5;
+/// The last one is only for tiles with pixels that have fewer samples: others are clean without it.
+constexpr int kFewSamples = 5;
 /// Of the filter's 3 × 3 window, each axis; of its centre.
 constexpr float kWindow[3] = {0.25f, 0.5f, 0.25f};
 constexpr float kCentre = 0.25f;
 /// The same of the window over which variance is averaged.
 constexpr float kSmooth[3] = {0.25f, 0.5f, 0.25f};
-/// Luminances may differ by so many standard deviations, direct and indirect light: shadows of lamps
-/// have edges.
+/// Luminances may differ by so many standard deviations, direct and indirect light: shadows of
+/// lamps have edges.
 constexpr float kSigmas[kParts] = {8.0f, 11.0f};
 /// … and by so much more, in units of the planes.
 constexpr float kLeastSpan = 1e-3f;
