@@ -106,7 +106,7 @@ struct LightSampler::State {
     void clearBlock(LightImages& out, int x0, int y0, int x1, int y1, bool keep);
     void keepSample(const Scratch& s, int i, const Rgb16& direct, const Rgb16& indirect);
     void traceAgain(int begin, int end, LightChangeImages& out, Scratch& s) const;
-    void forgetTiles(std::span<const uint8_t> wanted);
+    void forgetTiles(std::span<const uint8_t> wanted, Workers& workers);
     LitPoint carried(const KeptSample& sample) const;
 };
 
@@ -247,14 +247,16 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
 
 /// What was kept in tiles that are sampled anew: of a block that the picture's border cuts, the
 /// pixel to be kept may lie outside.
-void LightSampler::State::forgetTiles(std::span<const uint8_t> wanted) {
+void LightSampler::State::forgetTiles(std::span<const uint8_t> wanted, Workers& workers) {
     const int tiles_x = (kept_width + kTileSize - 1) / kTileSize;
-    for (KeptSample& sample : kept) {
-        const int tile = sample.y / kTileSize * tiles_x + sample.x / kTileSize;
-        if (wanted.empty() || wanted[size_t(tile)] != 0) {
-            sample.surface = 0;
+    workers.parallelFor(int(kept.size()), 8192, [&](int begin, int end, int) {
+        for (size_t i = size_t(begin); i < size_t(end); ++i) {
+            const int tile = kept[i].y / kTileSize * tiles_x + kept[i].x / kTileSize;
+            if (wanted.empty() || wanted[size_t(tile)] != 0) {
+                kept[i].surface = 0;
+            }
         }
-    }
+    });
 }
 
 void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers,
@@ -272,7 +274,7 @@ void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers
         if (!same_size) {
             state.kept.assign(rows * size_t(state.blocksAcross()), {});
         }
-        state.forgetTiles(wanted);
+        state.forgetTiles(wanted, workers);
     }
     const SampledLight& sampled = state.scene.list->lighting.sampled;
     if (sampled.ambient == AmbientLight::screen_occlusion) {
