@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <span>
 
 namespace still::upscale {
 namespace {
@@ -42,88 +41,68 @@ struct Span {
     }
 };
 
-/// Divides sums of up to 4096 samples by their number, rounded half up, exactly: (2^28 + 2^11) ·
-/// 2^12 < 2^44, so that what the reciprocal is too large by never reaches a whole one; and
-/// (2^28 + 2^11) · 2^33 < 2^64.
-class Mean {
-  public:
-    explicit Mean(uint32_t count)
-        : half_(count / 2), reciprocal_((uint64_t{1} << kShift) / count + 1) {}
-    uint16_t of(uint32_t sum) const {
-        return uint16_t((uint64_t{sum + half_} * reciprocal_) >> kShift);
+/// floor(2^44 / n) + 1. Sums of up to 4096 samples divided by their number are exact with it: (2^28
+/// + 2^11) · 2^12 < 2^44, so that what it is too large by never reaches a whole one; and (2^28 +
+/// 2^11) · 2^33 < 2^64 from n = 2^11 on, n · 2^16 · 2^45 / n < 2^64 before.
+constexpr int kMostSamples = 4096, kReciprocalShift = 44;
+constexpr std::array<uint64_t, kMostSamples + 1> makeReciprocals() {
+    std::array<uint64_t, kMostSamples + 1> table{};
+    for (size_t n = 1; n < table.size(); ++n) {
+        table[n] = (uint64_t{1} << kReciprocalShift) / n + 1;
     }
-
-  private:
-    static constexpr int kShift = 44;
-    uint32_t half_;
-    uint64_t reciprocal_;
-};
+    return table;
+}
+constexpr auto kReciprocals = makeReciprocals();
 
 struct Tile {
-    const Job& job;
-    Span columns;
+    const Sums sums;
+    const uint16_t* const samples[3];
+    uint16_t* const shown[3];
+    uint8_t* const shown_count;
+    const int sample_cap, settled;
+    const Span columns;
     SumsResult result;
-
-    /// Adds samples to the pixels of `hits`, all of which then have `count`. Channel after channel:
-    /// few streams.
-    void addSamples(ptrdiff_t at, ptrdiff_t from, std::span<const Hit> hits, uint32_t count) {
-        const bool shows = int(count) >= job.settled;
-        const Mean mean(count);
-        for (int c = 0; c < 3; ++c) {
-            const uint16_t* samples = job.frame.now.colour[c] + from;
-            uint32_t* sums = job.sums.colour[c] + at;
-            for (const Hit& hit : hits) {
-                sums[hit.output] = (count == 1 ? 0 : sums[hit.output]) + samples[hit.pixel];
-            }
-            uint16_t* shown = job.shown[c] + at;
-            for (size_t i = 0; shows && i < hits.size(); ++i) {
-                shown[hits[i].output] = mean.of(sums[hits[i].output]);
-            }
-        }
-        for (const Hit& hit : hits) {
-            job.sums.count[at + hit.output] = uint16_t(count);
-        }
-        for (size_t i = 0; shows && i < hits.size(); ++i) {
-            job.shown_count[at + hits[i].output] = uint8_t(std::min(count, 255u));
-        }
-        result.changed = true;
-    }
 
     /// Adds a row's samples to pixels that are not full; `moved`: but not to these, or null.
     void addRow(ptrdiff_t at, ptrdiff_t from, const bool* moved) {
-        const std::span hits(columns.hits.data(), size_t(columns.hit_count));
-        const uint16_t *counts = job.sums.count + at, *frames = job.sums.frames + at;
-        const auto same = [&](const Hit& a, const Hit& b) {
-            return counts[a.output] == counts[b.output] && frames[a.output] == frames[b.output];
-        };
-        // Nearly always all pixels of a row have been treated alike.
-        for (size_t first = 0; first < hits.size();) {
-            size_t end = first + 1;
-            while (end < hits.size() && moved == nullptr && same(hits[first], hits[end])) {
-                ++end;
+        for (int i = 0; i < columns.hit_count; ++i) {
+            const Hit hit = columns.hits[size_t(i)];
+            const ptrdiff_t to = at + hit.output;
+            if (sums.frames[to] >= sample_cap || (moved != nullptr && moved[hit.output])) {
+                continue;
             }
-            const int output = hits[first].output;
-            if (frames[output] < job.sample_cap && (moved == nullptr || !moved[output])) {
-                addSamples(at, from, hits.subspan(first, end - first), counts[output] + 1u);
+            const uint32_t count = sums.count[to] + 1u;
+            const uint32_t past = count == 1 ? 0 : ~uint32_t{0};
+            const uint64_t reciprocal = kReciprocals[count];
+            const bool shows = int(count) >= settled;
+            for (int c = 0; c < 3; ++c) {
+                const uint32_t sum = (sums.colour[c][to] & past) + samples[c][from + hit.pixel];
+                sums.colour[c][to] = sum;
+                if (shows) {
+                    shown[c][to] = uint16_t(((sum + count / 2) * reciprocal) >> kReciprocalShift);
+                }
             }
-            first = end;
+            sums.count[to] = uint16_t(count);
+            shown_count[to] = shows ? uint8_t(std::min(count, 255u)) : shown_count[to];
+            result.changed = true;
         }
     }
 
     void forgetRow(ptrdiff_t at) {
-        std::memset(job.sums.frames + at, 0, size_t(columns.count) * sizeof(uint16_t));
-        std::memset(job.sums.count + at, 0, size_t(columns.count) * sizeof(uint16_t));
+        std::memset(sums.frames + at, 0, size_t(columns.count) * sizeof(uint16_t));
+        std::memset(sums.count + at, 0, size_t(columns.count) * sizeof(uint16_t));
     }
 
     /// Nothing happens in the row. `from`: the frame's row of samples for it, at the pixel before
     /// the tile; −1: none.
     void growRow(ptrdiff_t at, ptrdiff_t from, bool has_samples) {
-        uint16_t* frames = job.sums.frames + at;
         if (has_samples) {
             addRow(at, from, nullptr);
         }
+        uint16_t* __restrict frames = sums.frames + at;
+        const uint16_t cap = uint16_t(sample_cap);
         for (int i = 0; i < columns.count; ++i) {
-            frames[i] = uint16_t(frames[i] + (frames[i] < job.sample_cap ? 1 : 0));
+            frames[i] = uint16_t(frames[i] + uint16_t(frames[i] < cap));
         }
     }
 
@@ -133,11 +112,11 @@ struct Tile {
         std::array<bool, kMostOutputs> moved{};
         for (int i = 0; i < columns.count; ++i) {
             const uint8_t disturbance = disturbed[columns.under[size_t(i)]];
-            uint16_t& frames = job.sums.frames[at + i];
+            uint16_t& frames = sums.frames[at + i];
             if (disturbance != 0) {
                 result.changed |= frames != 0;
                 frames = 0;
-                job.sums.count[at + i] = 0;
+                sums.count[at + i] = 0;
             }
             moved[size_t(i)] = disturbance == taa::kMoved;
         }
@@ -145,20 +124,20 @@ struct Tile {
             addRow(at, from, moved.data());
         }
         for (int i = 0; i < columns.count; ++i) {
-            uint16_t& frames = job.sums.frames[at + i];
-            frames = uint16_t(frames + (frames < job.sample_cap && !moved[size_t(i)] ? 1 : 0));
+            uint16_t& frames = sums.frames[at + i];
+            frames = uint16_t(frames + (frames < sample_cap && !moved[size_t(i)] ? 1 : 0));
         }
     }
 
     void judgeRow(ptrdiff_t at) {
-        const uint16_t *frames = job.sums.frames + at, *counts = job.sums.count + at;
+        const uint16_t *frames = sums.frames + at, *counts = sums.count + at;
         uint16_t least_frames = 65535, least_count = 65535;
         for (int i = 0; i < columns.count; ++i) {
             least_frames = std::min(least_frames, frames[i]);
             least_count = std::min(least_count, counts[i]);
         }
-        result.finished &= least_frames >= job.sample_cap;
-        result.settled &= least_count >= job.settled;
+        result.finished &= least_frames >= sample_cap;
+        result.settled &= least_count >= settled;
     }
 };
 
@@ -171,7 +150,15 @@ SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillness stilln
     }
     const TileRect out = outputRect(job, tile);
     const taa::SlotOut& record = job.frame.record;
-    Tile sums{job, Span(job.x, out.x0, out.x1, tile.x0, tile.x1, record.jitter_x_fx8), {}};
+    const auto& now = job.frame.now.colour;
+    Tile sums{job.sums,
+              {now[0], now[1], now[2]},
+              {job.shown[0], job.shown[1], job.shown[2]},
+              job.shown_count,
+              job.sample_cap,
+              job.settled,
+              Span(job.x, out.x0, out.x1, tile.x0, tile.x1, record.jitter_x_fx8),
+              {}};
     const Span rows(job.y, out.y0, out.y1, tile.y0, tile.y1, record.jitter_y_fx8);
     std::array<uint8_t, kTileSize> disturbed;
     int next_hit = 0, tested = -1;

@@ -13,8 +13,8 @@ namespace {
 using namespace command;
 
 bool isPublished(const std::string& mode) {
-    const char* const others[] = {"raw", "fxaa", "still", "fast", "tiny"};
-    return std::find(std::begin(others), std::end(others), mode) == std::end(others);
+    const TaaPreset* preset = findPreset(mode);
+    return preset != nullptr && preset->policy.method == Method::recursive;
 }
 
 template <class T>
