@@ -80,6 +80,15 @@ void addSize(CLI::App& command, Target& size, const char* text) {
     addParsed(command, "--resolution", size, parseResolution, text)->type_name("WIDTHxHEIGHT");
 }
 
+/// Of all scenes that the command opens.
+inline void addLights(CLI::App& command, std::string& lights) {
+    command
+        .add_option("--lights", lights,
+                    "Scene file whose lights and background are taken instead of\n"
+                    "the scene's own, as demos/scenes/sun_and_sky.json")
+        ->type_name("FILE");
+}
+
 /// What every command has that may print warnings or progress.
 inline void addQuiet(CLI::App& command, bool& quiet) {
     command.add_flag("--quiet", quiet, "No warnings and no progress; errors are told all the same");

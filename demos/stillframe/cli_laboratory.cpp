@@ -27,12 +27,6 @@ void addLaboratoryOptions(CLI::App& command, Options& o) {
     addQuiet(command, o.quiet);
 }
 
-void addLights(CLI::App& command, std::string& lights) {
-    command
-        .add_option("--lights", lights, "Scene file whose lights and background models are given")
-        ->type_name("FILE");
-}
-
 }  // namespace
 
 Subcommand declareAtlas(CLI::App& app) {

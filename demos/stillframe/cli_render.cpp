@@ -42,11 +42,7 @@ void addPictureOptions(CLI::App& render, RenderOptions& o) {
                     "scene without motion becomes; default 64")
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
-    render
-        .add_option("--lights", o.lights,
-                    "Scene file whose lights and background are taken instead of\n"
-                    "the scene's own, as demos/scenes/sun_and_sky.json")
-        ->type_name("FILE");
+    addLights(render, o.lights);
     render
         .add_option("--denoise", o.denoise,
                     "on (default) or off: whether light that is sampled, as of\n"

@@ -23,6 +23,7 @@ Subcommand declareView(CLI::App& app) {
     view->add_option("--tone-map", o.tone_map, "none (default) or reinhard")
         ->check(CLI::IsMember({"none", "reinhard"}))
         ->type_name("NAME");
+    addLights(*view, o.lights);
     view->add_option("--threads", o.threads, "Default: all cores")
         ->check(CLI::Range(1, 256))
         ->type_name("N");

@@ -205,6 +205,7 @@ Outcome<ViewerSettings> settingsOf(const ViewOptions& options) {
                     settings.mode = {choice.mode, policy, choice.ssaa_samples};
                     settings.tone_map =
                         options.tone_map == "reinhard" ? ToneMap::reinhard : ToneMap::none;
+                    settings.lights = options.lights;
                     settings.keeps_fps = options.script.empty();
                     if (!options.no_cache) {
                         settings.cache_folder = command::usersCacheFolder();
@@ -231,7 +232,8 @@ Outcome<void> view(const ViewOptions& options, Interruption& interruption) {
     if (!settings || !steps) {
         return tl::make_unexpected(settings ? steps.error() : settings.error());
     }
-    Outcome<Scene> scene = command::openScene(options.scene, settings->cache_folder);
+    Outcome<Scene> scene =
+        command::openScene(options.scene, settings->cache_folder, options.lights);
     if (!scene) {
         return tl::make_unexpected(scene.error());
     }

@@ -15,6 +15,7 @@ struct ViewOptions {
     std::string anti_aliasing = "taa";
     std::string taa;  ///< comma-separated settings over the preset's
     std::string tone_map = "none";
+    std::string lights;  ///< scene file; empty: the scenes' own
     int threads = 0;     ///< 0: all cores
     std::string script;  ///< empty: people
     bool no_cache = false;

@@ -20,6 +20,7 @@ struct ViewerSettings {
     ToneMap tone_map = ToneMap::none;
     SimdTarget simd = bestSimdTarget();
     std::filesystem::path cache_folder{};  ///< see loadScene(); empty: none
+    std::string lights{};                  ///< see openScene(); of all scenes
     /// The frame rate is kept by measured times; else what is drawn depends on events alone.
     bool keeps_fps = true;
 };
