@@ -14,9 +14,6 @@ constexpr std::array kViews{
     ViewInfo{View::id, "id", "a colour for each surface; nothing is black"},
     ViewInfo{View::motion, "motion",
              "hue is the direction, white rests, full colour at 16 pixels; no history is black"},
-    ViewInfo{View::light, "light",
-             "sampled light on white surfaces, one random sample a pixel; black where none is"},
-    ViewInfo{View::denoised, "denoised", "the same after the denoiser; black without it"},
     ViewInfo{View::history, "history", "the past as it is kept: last image, or last raw samples"},
     ViewInfo{View::reprojected, "reprojected",
              "the past alone, carried to this frame's places; black where there is none"},
@@ -34,6 +31,9 @@ constexpr std::array kViews{
              "triangles: black none, blue 2, magenta 4, orange 6, yellow 8, white 11 and more"},
     ViewInfo{View::error, "error",
              "distance from the reference: black none, blue, magenta, orange, yellow, white 64"},
+    ViewInfo{View::light, "light",
+             "sampled light on white surfaces, one random sample a pixel; black where none is"},
+    ViewInfo{View::denoised, "denoised", "the same after the denoiser; black without it"},
 };
 
 }  // namespace

@@ -19,8 +19,6 @@ enum class View : uint8_t {
     normal,         ///< of that sample
     id,             ///< of that sample
     motion,         ///< of that sample
-    light,          ///< sampled light as it is: one random sample a pixel
-    denoised,       ///< the same, clean
     history,        ///< the past as it is kept
     reprojected,    ///< the past alone, at this frame's places
     clipped,        ///< the same, held against the neighbourhood
@@ -31,6 +29,8 @@ enum class View : uint8_t {
     tiles,          ///< what was done for each tile of 64 × 64 pixels, and skipped
     overdraw,       ///< triangles that lie over each other
     error,          ///< distance from a supersampled picture that converges while all is still
+    light,          ///< sampled light as it is: one random sample a pixel
+    denoised,       ///< the same, clean
 };
 
 struct ViewInfo {

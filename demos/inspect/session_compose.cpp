@@ -42,10 +42,6 @@ void Session::State::paintView(Slot& slot) {
             return paintId(pane.sample(), out, workers);
         case View::motion:
             return paintMotion(pane.sample(), out, workers);
-        case View::light:
-            return paintLight(result.light, table, out, workers);
-        case View::denoised:
-            return paintLight(result.denoised, table, out, workers);
         case View::history:
             return pane.paintStory(StoryPlane::history, out);
         case View::reprojected:
@@ -66,6 +62,10 @@ void Session::State::paintView(Slot& slot) {
             return paintOverdraw(pane.overdraw(), out, workers);
         case View::error:
             return paintError(pane.picture(), reference.picture(), out, workers);
+        case View::light:
+            return paintLight(result.light, table, out, workers);
+        case View::denoised:
+            return paintLight(result.denoised, table, out, workers);
     }
 }
 
