@@ -70,45 +70,66 @@ HWY_INLINE MS usable(const Job& job, const SlotIn& slot, const JitterLanes& jitt
     return alive;
 }
 
-/// Old samples on the owner's way where not all are the owner's: counts().
-HWY_NOINLINE VS sifted(const Job& job, int k, const WindowLanes& w, const Outlook& own,
-                       const Outlook& far, const VS motion[2], const Pieces& pieces, VS id,
-                       VS depth, MS same, VS weight, VS& behind) {
+/// Old samples on the owner's way where not all are the owner's: counts(). `keeps`: all ones for
+/// those that count so far.
+HWY_NOINLINE void sifted(const Job& job, int k, const WindowLanes& w, const Outlook& own,
+                         const Outlook& far, const VS motion[2], const Clusters& clusters,
+                         const Four& id, const Four& depth, const MS same[4], Four& keeps,
+                         Four& behind) {
+    const DS d;
     const SlotIn& slot = job.slot[k];
     const Depths near(w.owner, own);
-    const MS weighs = hn::Gt(weight, zero());
-    const MS farther = hn::AndNot(hn::Or(same, hn::Gt(depth, near.high)), weighs);
-    const MS moved = hn::Lt(id, zero());
-    const VS surface = surfaces(id);
-    const MS easy = hn::Or(same, hn::And(farther, w.layered));
-    const MS known = hn::And(w.layered, hn::Eq(surface, w.far.surface));
-    const auto drop = [&](MS lanes) { weight = hn::IfThenZeroElse(lanes, weight); };
-    drop(hn::AndNot(known, hn::AndNot(w.moved, hn::And(farther, moved))));
-    if (w.any_apart) {
-        const VU low = unsign(flipTop(far.depth)), high = unsign(flipTop(own.depth));
-        const VS quarter = flipTop(sign(hn::AverageRound(low, hn::AverageRound(low, high))));
-        const MS lags = hn::Gt(w.slide, set(kMaxLag / k));
-        const MS back = hn::And(hn::And(farther, hn::Lt(depth, quarter)), lags);
-        behind = hn::VecFromMask(DS(), back);
-    }
-    const MS hard = hn::And(weighs, hn::Or(hn::Not(easy), hn::And(w.moved, moved)));
-    if (any(hard)) {
-        const VS other[2] = {pieces.fetch(slot.motion[0]), pieces.fetch(slot.motion[1])};
-        MS off = hn::Or(hn::Eq(other[0], set(kNoHistory)),
-                        hn::Gt(slideOf(other, motion), set(kMaxSlide / k)));
-        if (job.start_age != nullptr) {
-            off = hn::Or(off, olderThan(job.start_age, k, surface));
+    MS hard[4], any_hard = never();
+    for (int t = 0; t < 4; ++t) {
+        const MS weighs = hn::MaskFromVec(keeps.of[t]);
+        const MS farther = hn::AndNot(hn::Or(same[t], hn::Gt(depth.of[t], near.high)), weighs);
+        const MS moved = hn::Lt(id.of[t], zero());
+        const MS easy = hn::Or(same[t], hn::And(farther, w.layered));
+        const MS known = hn::And(w.layered, hn::Eq(surfaces(id.of[t]), w.far.surface));
+        const MS gone = hn::AndNot(known, hn::AndNot(w.moved, hn::And(farther, moved)));
+        keeps.of[t] = hn::IfThenZeroElse(gone, keeps.of[t]);
+        hard[t] = hn::And(weighs, hn::Or(hn::Not(easy), hn::And(w.moved, moved)));
+        any_hard = hn::Or(any_hard, hard[t]);
+        if (w.any_apart) {
+            const VU low = unsign(flipTop(far.depth)), high = unsign(flipTop(own.depth));
+            const VS quarter = flipTop(sign(hn::AverageRound(low, hn::AverageRound(low, high))));
+            const MS lags = hn::Gt(w.slide, set(kMaxLag / k));
+            behind.of[t] =
+                hn::VecFromMask(d, hn::And(hn::And(farther, hn::Lt(depth.of[t], quarter)), lags));
         }
-        drop(hn::And(hard, off));
+    }
+    if (any(any_hard)) {
+        const Four other[2] = {fetchFour(slot.motion[0], clusters),
+                               fetchFour(slot.motion[1], clusters)};
+        for (int t = 0; t < 4; ++t) {
+            const VS there[2] = {other[0].of[t], other[1].of[t]};
+            MS off = hn::Or(hn::Eq(there[0], set(kNoHistory)),
+                            hn::Gt(slideOf(there, motion), set(kMaxSlide / k)));
+            if (job.start_age != nullptr) {
+                off = hn::Or(off, olderThan(job.start_age, k, surfaces(id.of[t])));
+            }
+            keeps.of[t] = hn::IfThenZeroElse(hn::And(hard[t], off), keeps.of[t]);
+        }
     }
     if (w.any_moved) {
-        const MS lit = hn::And(hn::AndNot(hn::Eq(w.normal, zero()), w.moved), same);
-        if (any(hn::And(lit, hn::Gt(weight, zero())))) {
-            const Normals then(pieces.fetch(slot.normal)), now(w.normal);
-            drop(hn::AndNot(litAlike(then, now), lit));
+        const MS lit = hn::AndNot(hn::Eq(w.normal, zero()), w.moved);
+        const Four then = fetchFour(slot.normal, clusters);
+        const Normals now(w.normal);
+        for (int t = 0; t < 4; ++t) {
+            const MS tested = hn::And(lit, same[t]);
+            if (any(tested)) {
+                const MS unlike = hn::AndNot(litAlike(Normals(then.of[t]), now), tested);
+                keeps.of[t] = hn::IfThenZeroElse(unlike, keeps.of[t]);
+            }
         }
     }
-    return weight;
+}
+
+/// Samples of surfaces whose shading has changed since do not count.
+HWY_NOINLINE void dropChanged(const uint32_t* ages, int k, const Four& id, int count, Four& keeps) {
+    for (int t = 0; t < count; ++t) {
+        keeps.of[t] = hn::IfThenZeroElse(olderThan(ages, k, surfaces(id.of[t])), keeps.of[t]);
+    }
 }
 
 /// Samples along the owners' ways.
@@ -125,22 +146,26 @@ struct OwnKeep {
         own.next(window.owner);
         far.next(window.far);
     }
-    HWY_INLINE VS operator()(int k, const WayStop& stop, const Pieces& pieces, VS weight,
-                             VS& behind) const {
+    HWY_INLINE void operator()(int k, const WayStop& stop, const Clusters& clusters, int count,
+                               Four& keeps, Four& behind) const {
         if (k == 0) {
-            return weight;
+            return;
         }
-        const VS id = pieces.fetch(job.slot[k].id), depth = pieces.fetch(job.slot[k].depth);
-        const MS same = hn::And(hn::Eq(surfaces(id), window.owner.surface),
-                                Depths(window.owner, own).within(depth));
-        if (window.any_moved || any(hn::AndNot(same, hn::Gt(weight, zero())))) {
-            weight = sifted(job, k, window, own, far, stop.motion, pieces, id, depth, same, weight,
-                            behind);
+        const Four id = fetchFour(job.slot[k].id, clusters);
+        const Four depth = fetchFour(job.slot[k].depth, clusters);
+        const Depths near(window.owner, own);
+        MS same[4], others = never();
+        for (int t = 0; t < 4; ++t) {
+            same[t] =
+                hn::And(hn::Eq(surfaces(id.of[t]), window.owner.surface), near.within(depth.of[t]));
+            others = hn::Or(others, hn::AndNot(same[t], hn::MaskFromVec(keeps.of[t])));
+        }
+        if (window.any_moved || any(others)) {
+            sifted(job, k, window, own, far, stop.motion, clusters, id, depth, same, keeps, behind);
         }
         if (job.change_age != nullptr) {
-            weight = hn::IfThenZeroElse(olderThan(job.change_age, k, surfaces(id)), weight);
+            dropChanged(job.change_age, k, id, count, keeps);
         }
-        return weight;
     }
 };
 
@@ -158,38 +183,104 @@ struct FarKeep {
         own.next(window.owner);
         far.next(window.far);
     }
-    HWY_INLINE VS operator()(int k, const WayStop&, const Pieces& pieces, VS weight, VS&) const {
-        const VS id = pieces.fetch(job.slot[k].id), depth = pieces.fetch(job.slot[k].depth);
+    HWY_INLINE void operator()(int k, const WayStop&, const Clusters& clusters, int count,
+                               Four& keeps, Four&) const {
+        const Four id = fetchFour(job.slot[k].id, clusters);
+        const Four depth = fetchFour(job.slot[k].depth, clusters);
         const Depths near(window.owner, own);
-        const MS same = hn::And(hn::Eq(surfaces(id), window.owner.surface), near.within(depth));
-        const MS nearer =
-            hn::Or(hn::Gt(depth, near.high), hn::Gt(depth, Depths(window.far, far).high));
-        weight = hn::IfThenZeroElse(hn::Or(same, nearer), weight);
-        if (job.change_age != nullptr && k > 0) {
-            weight = hn::IfThenZeroElse(olderThan(job.change_age, k, surfaces(id)), weight);
+        const VS high = Depths(window.far, far).high;
+        for (int t = 0; t < count; ++t) {
+            const MS same =
+                hn::And(hn::Eq(surfaces(id.of[t]), window.owner.surface), near.within(depth.of[t]));
+            const MS nearer = hn::Or(hn::Gt(depth.of[t], near.high), hn::Gt(depth.of[t], high));
+            keeps.of[t] = hn::IfThenZeroElse(hn::Or(same, nearer), keeps.of[t]);
         }
-        return weight;
+        if (job.change_age != nullptr && k > 0) {
+            dropChanged(job.change_age, k, id, count, keeps);
+        }
     }
 };
 
-/// A frame's sample at a crossing of two axes.
+/// One of this frame's samples around an output pixel of each lane.
 template <class Keep>
-HWY_INLINE void takeSample(const Job& job, int k, const WayStop& stop, const JitterLanes& jitter,
-                           const AxisSite& across, const AxisSite& down, MS wanted,
-                           const Keep& keep, OutputTaps& taps) {
-    const SlotIn& slot = job.slot[k];
+HWY_INLINE void takeFresh(const Job& job, const WayStop& stop, const JitterLanes& jitter,
+                          const AxisSite& across, const AxisSite& down, MS wanted, const Keep& keep,
+                          OutputTaps& taps) {
+    const SlotIn& slot = job.slot[0];
     const MS alive = usable(job, slot, jitter, across.number, down.number, wanted);
     if (!any(alive)) {
         return;
     }
     const VS narrow = hn::ShiftRight<1>(hn::Mul(across.kernel, down.kernel));
-    const VS wide = k == 0 ? hn::MulHigh(hn::ShiftLeft<3>(across.tent), hn::ShiftLeft<2>(down.tent))
-                           : set(upscale::kFarWeight);
-    VS weight = hn::IfThenElseZero(alive, hn::Add(narrow, wide));
-    const Pieces pieces(across.number, down.number, alive, job.stride);
-    VS behind = zero();
-    weight = keep(k, stop, pieces, weight, behind);
-    taps.add(weight, across.place, down.place, behind, slot, pieces);
+    const VS tent = hn::MulHigh(hn::ShiftLeft<3>(across.tent), hn::ShiftLeft<2>(down.tent));
+    VS weight = hn::IfThenElseZero(alive, hn::Add(narrow, tent));
+    Clusters clusters;
+    clusters.count = 0;
+    forClusters(hn::Sub(across.number, hn::Iota(DS(), 0)), down.number, alive,
+                [&](int x, int y, MS some) {
+                    const ptrdiff_t at = y * job.stride + x;
+                    clusters.of[clusters.count++] = {at, at, some};
+                });
+    Four keeps{{hn::VecFromMask(DS(), alive), zero(), zero(), zero()}}, behind = keeps;
+    keep(0, stop, clusters, 1, keeps, behind);
+    const int n = taps.count++;
+    taps.weight[n] = hn::And(weight, keeps.of[0]);
+    taps.ex[n] = across.place;
+    taps.ey[n] = down.place;
+    taps.behind[n] = zero();
+    for (int c = 0; c < 3; ++c) {
+        taps.colour[c][n] = fetchFour(slot.colour[c], clusters).of[0];
+    }
+}
+
+/// The four samples of an old frame among which the nearest ones of all of a pixel's output pixels
+/// are.
+struct OldSamples {
+    VS column, row;  ///< of the first
+    Four keeps, behind, colour[3];
+};
+
+/// False when there are none.
+template <class Keep>
+HWY_INLINE bool fetchOld(const Job& job, int k, const WayStop& stop, const JitterLanes& jitter,
+                         const Keep& keep, OldSamples& samples) {
+    const DS d;
+    const SlotIn& slot = job.slot[k];
+    const VS column = samples.column, row = samples.row, one = set(1);
+    const VS out =
+        hn::Or(beyond(hn::Add(column, one), job.width), beyond(hn::Add(row, one), job.height));
+    const MS lanes = hn::And(stop.alive, hn::Eq(out, zero()));
+    if (!any(lanes)) {
+        return false;
+    }
+    Clusters clusters;
+    clusters.count = 0;
+    bool inner = jitter.alike;
+    forClusters(hn::Sub(column, hn::Iota(d, 0)), row, lanes, [&](int x0, int y0, MS some) {
+        // Rows outside are not memory: others are read in their stead, and weigh nothing.
+        const ptrdiff_t upper = y0 < 0 ? 0 : y0;
+        const ptrdiff_t lower = y0 + 1 < job.height ? y0 + 1 : y0;
+        clusters.of[clusters.count++] = {upper * job.stride + x0, lower * job.stride + x0, some};
+        inner &= x0 >= 0 && x0 + kHalves < job.width && y0 >= 0 && y0 + 1 < job.height;
+    });
+    for (int t = 0; t < 4; ++t) {
+        MS alive = lanes;
+        if (!inner) {
+            alive = usable(job, slot, jitter, hn::Add(column, set(t & 1)),
+                           hn::Add(row, set(t >> 1)), lanes);
+        }
+        samples.keeps.of[t] = hn::VecFromMask(d, alive);
+        samples.behind.of[t] = zero();
+    }
+    keep(k, stop, clusters, 4, samples.keeps, samples.behind);
+    for (int c = 0; c < 3; ++c) {
+        samples.colour[c] = fetchFour(slot.colour[c], clusters);
+    }
+    return true;
+}
+
+HWY_INLINE VS pick(MS second, VS first, VS other) {
+    return hn::IfThenElse(second, other, first);
 }
 
 /// visitSamples() for all output pixels of a block.
@@ -201,42 +292,72 @@ HWY_NOINLINE void collectOutput(const upscale::Job& job, const OutputBlock& bloc
     for (int t = 0; t < rows * kMaxUpscale; ++t) {
         taps[t].count = 0;
     }
-    for (int k = 0; k < way.frames; ++k) {
+    for (int k = 0; k < way.frames; ++k, keep.next()) {
         const WayStop& stop = way.stop[k];
         const JitterLanes jitter =
             jitterAt(frame, frame.slot[k], stop.place.column, stop.place.row, stop.alive);
         const VS x = hn::Sub(stop.place.x_fx8, jitter.x_fx8);
         const VS y = hn::Sub(stop.place.y_fx8, jitter.y_fx8);
-        const int each = k == 0 ? 2 : 1;
-        AxisSite across[kMaxUpscale * 2], down[kMaxUpscale * 2];
+        if (k == 0) {
+            for (int r = 0; r < rows; ++r) {
+                const VS part_y = hn::Add(y, set(block.offset_y[r]));
+                for (int p = 0; p < block.across; ++p) {
+                    const VS part_x = hn::Add(x, load(block.columns.offset[p] + block.i));
+                    const MS wanted = hn::And(block.wanted[r][p], stop.alive);
+                    for (int t = 0; t < 4; ++t) {
+                        takeFresh(frame, stop, jitter,
+                                  besideSite(stop.place.column, part_x, t & 1, job.x.ratio_fx8),
+                                  besideSite(stop.place.row, part_y, t >> 1, job.y.ratio_fx8),
+                                  wanted, keep, taps[r * kMaxUpscale + p]);
+                    }
+                }
+            }
+            continue;
+        }
+        AxisSite across[kMaxUpscale], down[kMaxUpscale];
         for (int p = 0; p < block.across; ++p) {
-            const VS part = hn::Add(x, load(block.columns.offset[p] + block.i));
-            if (k > 0) {
-                across[p] = nearestSite(stop.place.column, part, job.x.ratio_fx8);
-            } else {
-                across[2 * p] = besideSite(stop.place.column, part, 0, job.x.ratio_fx8);
-                across[2 * p + 1] = besideSite(stop.place.column, part, 1, job.x.ratio_fx8);
-            }
+            across[p] =
+                nearestSite(stop.place.column, hn::Add(x, load(block.columns.offset[p] + block.i)),
+                            job.x.ratio_fx8);
         }
         for (int r = 0; r < rows; ++r) {
-            const VS part = hn::Add(y, set(block.offset_y[r]));
-            if (k > 0) {
-                down[r] = nearestSite(stop.place.row, part, job.y.ratio_fx8);
-            } else {
-                down[2 * r] = besideSite(stop.place.row, part, 0, job.y.ratio_fx8);
-                down[2 * r + 1] = besideSite(stop.place.row, part, 1, job.y.ratio_fx8);
-            }
+            down[r] =
+                nearestSite(stop.place.row, hn::Add(y, set(block.offset_y[r])), job.y.ratio_fx8);
+        }
+        OldSamples samples;
+        samples.column = across[0].number;
+        samples.row = down[0].number;
+        if (!fetchOld(frame, k, stop, jitter, keep, samples)) {
+            continue;
         }
         for (int r = 0; r < rows; ++r) {
+            const MS below = hn::Ne(down[r].number, samples.row);
+            VS keeps[2], behind[2], colour[3][2];
+            for (int i = 0; i < 2; ++i) {
+                keeps[i] = pick(below, samples.keeps.of[i], samples.keeps.of[2 + i]);
+                behind[i] = pick(below, samples.behind.of[i], samples.behind.of[2 + i]);
+                for (int c = 0; c < 3; ++c) {
+                    colour[c][i] =
+                        pick(below, samples.colour[c].of[i], samples.colour[c].of[2 + i]);
+                }
+            }
             for (int p = 0; p < block.across; ++p) {
-                const MS wanted = hn::And(block.wanted[r][p], stop.alive);
-                for (int t = 0; t < each * each; ++t) {
-                    takeSample(frame, k, stop, jitter, across[each * p + t % each],
-                               down[each * r + t / each], wanted, keep, taps[r * kMaxUpscale + p]);
+                const MS right = hn::Ne(across[p].number, samples.column);
+                OutputTaps& to = taps[r * kMaxUpscale + p];
+                const int n = to.count++;
+                const VS weight =
+                    hn::Add(hn::ShiftRight<1>(hn::Mul(across[p].kernel, down[r].kernel)),
+                            set(upscale::kFarWeight));
+                to.weight[n] = hn::IfThenElseZero(block.wanted[r][p],
+                                                  hn::And(weight, pick(right, keeps[0], keeps[1])));
+                to.ex[n] = across[p].place;
+                to.ey[n] = down[r].place;
+                to.behind[n] = pick(right, behind[0], behind[1]);
+                for (int c = 0; c < 3; ++c) {
+                    to.colour[c][n] = pick(right, colour[c][0], colour[c][1]);
                 }
             }
         }
-        keep.next();
     }
 }
 

@@ -30,30 +30,6 @@ struct OutputColumns {
     }
 };
 
-/// One sample for each lane, loaded in as few pieces as they lie in.
-struct Pieces {
-    struct Piece {
-        ptrdiff_t at;  ///< of lane 0
-        MS lanes;
-    };
-    Piece of[kHalves];
-    int count = 0;
-
-    /// Samples in the picture; some lane must be set.
-    HWY_INLINE Pieces(VS column, VS row, MS lanes, ptrdiff_t stride) {
-        forClusters(hn::Sub(column, hn::Iota(DS(), 0)), row, lanes, [&](int x, int y, MS some) {
-            of[count++] = {y * stride + x, some};
-        });
-    }
-    HWY_INLINE VS fetch(const int16_t* plane) const {
-        VS v = load(plane + of[0].at);
-        for (int i = 1; i < count; ++i) {
-            v = hn::IfThenElse(of[i].lanes, load(plane + of[i].at), v);
-        }
-        return v;
-    }
-};
-
 /// What an axis has to say about samples near the places: see upscale_rules.h.
 struct AxisSite {
     VS number;  ///< the sample's column or row
@@ -90,17 +66,6 @@ struct OutputTaps {
     VS weight[kMost], ex[kMost], ey[kMost], behind[kMost];
     VS colour[3][kMost];
     int count;
-
-    HWY_INLINE void add(VS w, VS x, VS y, VS back, const SlotIn& slot, const Pieces& pieces) {
-        weight[count] = w;
-        ex[count] = x;
-        ey[count] = y;
-        behind[count] = back;
-        for (int c = 0; c < 3; ++c) {
-            colour[c][count] = pieces.fetch(slot.colour[c]);
-        }
-        ++count;
-    }
 };
 
 }  // namespace HWY_NAMESPACE
