@@ -277,12 +277,12 @@ struct GroupRow {
     Group groups[kTileSize / kHalves];
 };
 
-/// Asks for the samples at a stop, and for what the next row's way will read there. A line holds 32
-/// pixels of a plane.
+/// Asks for the samples at a stop, or `below_fx8`, and for what the next row's way will read there.
+/// A line holds 32 pixels of a plane.
 HWY_INLINE void prefetchStop(const Job& job, const SlotIn& slot, const PlaceLanes& place,
-                             bool last_group) {
+                             bool last_group, int below_fx8 = 0) {
     const int y_fx8 = hn::GetLane(place.y_fx8);
-    const int upper = hn::GetLane(place.row) + ((y_fx8 - slot.jitter_y_fx8) >> 8);
+    const int upper = hn::GetLane(place.row) + ((y_fx8 - slot.jitter_y_fx8 + below_fx8) >> 8);
     const int nearest = hn::GetLane(place.row) + ((y_fx8 - slot.jitter_y_fx8 + 128) >> 8);
     const int column = hn::GetLane(place.column);
     const ptrdiff_t samples = (upper + 1) * job.stride + column;

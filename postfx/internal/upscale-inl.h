@@ -30,7 +30,8 @@ HWY_INLINE void stepLimited(const Job& job, int k, int frames, const LayerLanes&
 }
 
 /// Windows and ways of a row of a tile.
-HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, PixelGroup* groups) {
+HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, int offset_y,
+                                 PixelGroup* groups) {
     const int count = (tile.x1 - tile.x0 + kHalves - 1) / kHalves;
     prefetchWindows(job, tile, y);
     for (int g = 0; g < count; ++g) {
@@ -52,7 +53,7 @@ HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, Pi
     for (int g = 0; g < count; ++g) {
         const WayOf<kMaxUpscaleRing>& way = groups[g].way;
         for (int k = 1; k < way.frames; ++k) {
-            prefetchStop(job, job.slot[k], way.stop[k].place, g + 1 == count);
+            prefetchStop(job, job.slot[k], way.stop[k].place, g + 1 == count, offset_y + 128);
         }
     }
 }
@@ -575,7 +576,8 @@ HWY_ATTR void upscaleTile(const upscale::Job& job, const TileRect& tile, bool su
     // The next row's samples are on their way while this one's pixels are made.
     for (int y = tile.y0 - 1; y < tile.y1; ++y) {
         if (y + 1 < tile.y1) {
-            lookAlongFrame(job.frame, tile, y + 1, rows[(y + 1) & 1]);
+            const int offset_y = job.y.toFrame(job.y.offsetOf(job.y.firstOf(y + 1), y + 1));
+            lookAlongFrame(job.frame, tile, y + 1, offset_y, rows[(y + 1) & 1]);
         }
         for (int g = 0; g < count && y >= tile.y0; ++g) {
             OutputBlock block{.columns = columns,

@@ -15,8 +15,8 @@ constexpr int kCentreTolerance = 144;
 
 /// Frames that are followed at most where a window shows one surface with little contrast, and with
 /// next to none.
-constexpr int kCalmFrames = 16;
-constexpr int kFlatFrames = 6;
+constexpr int kCalmFrames = 8;
+constexpr int kFlatFrames = 4;
 /// … in which the farther of two surfaces is looked for.
 constexpr int kFarFrames = 8;
 
