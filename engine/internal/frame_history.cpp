@@ -45,7 +45,15 @@ SampleOffset FrameLoop::State::offsetOf(const FrameState& frame, uint32_t sample
     if (frame.jitter_fx8 && settings.subframes == 1) {
         return {(*frame.jitter_fx8)[0], (*frame.jitter_fx8)[1]};
     }
-    const SampleOffset offset = policySample(settings.policy, sample);
+    // Under a camera that moves, a pixel of the picture is made from the last few frames, and only
+    // their samples have to lie evenly; at rest all of a long sequence count.
+    const TaaPolicy& policy = settings.policy;
+    const bool moves =
+        !frame.cut && frame.camera.view_projection != frame.camera_before.view_projection;
+    const SampleOffset offset =
+        reconstructs && moves
+            ? jitterSample(policy.jitter, policy.jitter_scale_fx8, policy.scramble, sample)
+            : policySample(policy, sample);
     return {withinPixel(offset.x_fx8 - drift.x_fx8), withinPixel(offset.y_fx8 - drift.y_fx8)};
 }
 
