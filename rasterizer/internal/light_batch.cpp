@@ -239,7 +239,7 @@ void addOcclusion(const LightScene& scene, LightBatch& batch) {
         rays[i] = rayFrom(point, drawHemisphere(point.normal, batch.random[kRandomHemisphere][i]),
                           lighting.sampled.occlusion_distance, batch.random[kRandomHoles][i].y);
     }
-    scene.trace.occluded(scene.tree, rays, batch.count, blocked);
+    scene.trace.occludedTogether(scene.tree, rays, batch.count, blocked);
     const Float3 ambient{lighting.ambient[0], lighting.ambient[1], lighting.ambient[2]};
     for (int i = 0; i < batch.count; ++i) {
         batch.indirect[i] = blocked[i] != 0 ? Float3{0, 0, 0} : ambient;
