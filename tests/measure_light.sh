@@ -7,18 +7,20 @@
 #   --cache DIR    another folder for references
 #   --samples N    at most so many of a reference: quick, and less exact
 #   --only noise|upscaling
+#   --time-resolution WxH  at which upscaling is timed, default 320x180
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 still=build/release/demos/stillframe
-output="" only="" options=(--quiet)
+output="" only="" options=(--quiet) times=()
 while [ $# -gt 0 ]; do
     case "$1" in
         --output) output=$2 && shift ;;
         --only) only=$2 && shift ;;
+        --time-resolution) times=("$1" "$2") && shift ;;
         --cache | --samples) options+=("$1" "$2") && shift ;;
         *)
-            sed -n '2,10s/^# //p' "$0" >&2
+            sed -n '2,11s/^# //p' "$0" >&2
             exit 2
             ;;
     esac
@@ -69,7 +71,7 @@ fi
 
 if [ "$only" != noise ]; then
     "$still" atlas --presets still,quality,performance,bicubic,bicubic:ratio=2 --versus still \
-        "${options[@]}" --output "$output/upscaling" >"$output/upscaling.txt"
+        "${options[@]}" "${times[@]}" --output "$output/upscaling" >"$output/upscaling.txt"
     head "Upscaled, against native \`still\`, means over the atlas"
     awk "$row"'
         NF >= 8 && $1 != "segment" { psnr[$1, $2] = $4; flip[$1, $2] = $5; time[$1, $2] = $6 }

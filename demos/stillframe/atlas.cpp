@@ -105,6 +105,7 @@ Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption) {
         return typed.empty() && noise ? std::string(of_noise) : typed;
     };
     AtlasPlan plan{.resolution = options.resolution,
+                   .time_resolution = options.time_resolution.value_or(options.resolution),
                    .samples = options.samples > 0 ? options.samples : AtlasPlan::kMaxSamples,
                    .noise = noise,
                    .quiet = options.quiet};

@@ -14,6 +14,7 @@ struct AtlasPlan {
     std::vector<Mode> modes{};
     std::optional<size_t> versus{};  ///< the mode that the others are held against
     Size resolution{320, 180};
+    Size time_resolution{320, 180};
     int samples = kMaxSamples;  ///< at most so many of a reference
     bool noise = false;         ///< the suite of noise: what time buys is measured, too
     bool quiet = false;

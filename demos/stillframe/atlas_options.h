@@ -18,6 +18,7 @@ struct AtlasOptions {
     std::string versus;  ///< one of the columns, which the others are held against; empty: the
                          ///< suite's, which has one in the suite of noise
     Size resolution{320, 180};
+    std::optional<Size> time_resolution;  ///< of what is timed; empty: the same
     int samples = 0;     ///< at most so many of a reference; 0: as each case wants
     std::string cache;   ///< folder; empty: the user's
     std::string output;  ///< folder, made when it is not there

@@ -164,7 +164,9 @@ uint64_t AtlasRun::keyOf(const PreparedCase& prepared, const Mode& mode) const {
 }
 
 uint64_t AtlasRun::raceKeyOf(const PreparedCase& prepared) const {
-    std::string text = std::string(kRaceKind) + " " + report_.versus;
+    std::string text = std::string(kRaceKind) + " " + report_.versus + " " +
+                       std::to_string(plan_.time_resolution.width) + " " +
+                       std::to_string(plan_.time_resolution.height);
     for (const std::string& mode : report_.modes) {
         text += " " + mode;
     }
@@ -195,7 +197,7 @@ Outcome<std::vector<SegmentTimes>> AtlasRun::times(const PreparedCase& prepared)
         return std::move(*known);
     }
     auto measured =
-        race(*prepared.atlas, prepared.scene, plan_.modes, *plan_.versus, plan_.resolution);
+        race(*prepared.atlas, prepared.scene, plan_.modes, *plan_.versus, plan_.time_resolution);
     progress_.advance();
     if (program_ != 0) {
         if (auto kept = cache_.store(key, timesBytes(measured)); !kept) {

@@ -59,6 +59,9 @@ Subcommand declareAtlas(CLI::App& app) {
                      "One of the presets: time all in turns with it, and print what they\n"
                      "gain and cost against it, on the mean of all cases")
         ->type_name("NAME");
+    addParsed(*atlas, "--time-resolution", o->time_resolution, parseResolution,
+              "At which --versus takes times, default that of the pictures")
+        ->type_name("WIDTHxHEIGHT");
     atlas
         ->add_option("--samples", o->samples,
                      "At most so many of each reference: quick, and less exact")

@@ -129,7 +129,7 @@ TEST_CASE("atlas: --versus prints a table of means, or has it in the JSON", "[cl
     for (const char* segment : {"first", "still", "moving", "all"}) {
         CHECK(table.out.find("\n" + std::string(segment) + " ") != std::string::npos);
     }
-    const Ran json = shell(folder.path(), run + "--json");
+    const Ran json = shell(folder.path(), run + "--json --time-resolution 64x36");
     CHECK(json.out.find("\"versus\": \"still\",\n\"summary\": [") != std::string::npos);
     CHECK(json.out.find("\"time_share\":1.0") != std::string::npos);
     CHECK(json.out.find("\"time_share\":null") != std::string::npos);  // a single frame
