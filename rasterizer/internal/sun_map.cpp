@@ -142,7 +142,7 @@ void SunMap::update(const DrawList& list, int pixels, SimdTarget simd, Workers& 
     DrawList seen = list;
     seen.materials = shapes;
     seen.lighting = {};
-    rasterizer_.transformAndBin(seen, view_, {.simd = simd, .ticks = nullptr}, workers);
+    rasterizer_.transformAndBin(seen, view_, {.simd = simd, .planes = {}}, workers);
     rasterizer_.rasterize(drawn_, workers);
 }
 
