@@ -367,6 +367,7 @@ Job TemporalUpscaler::State::makeJob(const GBuffer& gbuffer, const UpscaleSettin
     job.sums.frames = sum_frames.view().data;
     job.shown_count = shown_count.view().data;
     job.sample_cap = settings.sample_cap;
+    job.sum_kernels = upscale::sumKernels(settings.simd);
     job.settled = std::min(settledCount(settings, job), settings.sample_cap);
     return job;
 }

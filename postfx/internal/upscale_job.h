@@ -7,6 +7,7 @@
 
 #include "postfx/internal/accumulate.h"
 #include "postfx/internal/ring.h"
+#include "postfx/internal/upscale_sums_row.h"
 #include "postfx/upscale.h"
 #include "rasterizer/fixed.h"
 
@@ -86,6 +87,7 @@ struct Job {
     Slot slot[kMaxUpscaleRing];  ///< slot[k] is k frames old
     ptrdiff_t stride = 0;        ///< of the image's planes, in elements
     Sums sums;
+    SumKernels sum_kernels;          ///< null: one pixel after the other
     uint16_t* shown[3] = {};         ///< the image
     uint8_t* shown_count = nullptr;  ///< samples in it, up to 255
     int sample_cap = 256;            ///< frames after which a still pixel is finished

@@ -1,6 +1,5 @@
 // The same as upscale_sums_reference.cpp, with what rows and columns share computed once for a
-// tile. Most output pixels get no sample in a frame, so a row costs a count of its frames and the
-// few pixels that do; there is little for lanes to do side by side.
+// tile, and rows in lanes where nothing happens.
 
 #include "postfx/internal/upscale_sums.h"
 
@@ -10,8 +9,6 @@
 
 namespace still::upscale {
 namespace {
-
-constexpr int kMostOutputs = kMaxUpscale * kTileSize + kMaxUpscale;
 
 /// An output pixel of a row that gets a sample, and the frame's pixel that it comes from.
 struct Hit {
@@ -24,19 +21,47 @@ struct Span {
     int first = 0, count = 0;                 ///< output pixels
     int origin = 0;                           ///< the frame's pixel before the tile
     std::array<uint8_t, kMostOutputs> under;  ///< pixelUnder(), from the tile's first
-    std::array<Hit, kTileSize + 2> hits;
+    std::array<Hit, kTileSize + 3> hits;
     int hit_count = 0;
+    std::array<int32_t, kMostOutputs> pixel, next;  ///< see SumRow
 
     Span(const Axis& axis, int begin, int end, int tile_begin, int tile_end, int jitter_fx8)
         : first(begin), count(end - begin), origin(tile_begin - 1) {
+        // Axis::outputOf() and pixelUnder(), with their remainders carried along instead of
+        // divided.
+        int64_t whole = 2 * int64_t(axis.image);
+        int place = pixelUnder(axis, first);
+        int64_t rest = (2 * int64_t(first) + 1) * axis.frame - whole * place;
         for (int i = 0; i < count; ++i) {
-            under[size_t(i)] = uint8_t(pixelUnder(axis, first + i) - tile_begin);
+            under[size_t(i)] = uint8_t(place - tile_begin);
+            rest += 2 * int64_t(axis.frame);
+            place += rest >= whole ? 1 : 0;
+            rest -= rest >= whole ? whole : 0;
         }
-        for (int pixel = std::max(origin, 0); pixel < std::min(tile_end + 1, axis.frame); ++pixel) {
-            const int output = axis.outputOf(pixel, jitter_fx8) - first;
-            if (output >= 0 && output < count) {
-                hits[size_t(hit_count++)] = {output, pixel - origin};
+        const int begin_pixel = std::max(origin, 0);
+        whole = 256 * int64_t(axis.frame);
+        place = axis.outputOf(begin_pixel, jitter_fx8);
+        rest = (256 * int64_t(begin_pixel) + 128 + jitter_fx8) * axis.image - whole * place;
+        for (int p = begin_pixel; p < std::min(tile_end + 1, axis.frame); ++p) {
+            if (place >= first && place < end) {
+                hits[size_t(hit_count++)] = {place - first, p - origin};
             }
+            rest += 256 * int64_t(axis.image);
+            for (; rest >= whole; rest -= whole) {
+                ++place;
+            }
+        }
+    }
+
+    void spread() {
+        pixel.fill(-1);
+        for (int i = 0; i < hit_count; ++i) {
+            pixel[size_t(hits[size_t(i)].output)] = hits[size_t(i)].pixel;
+        }
+        int after = 0;
+        for (size_t i = size_t(count); i-- > 0;) {
+            after = pixel[i] >= 0 ? pixel[i] : after;
+            next[i] = after;
         }
     }
 };
@@ -60,13 +85,18 @@ struct Tile {
     uint16_t* const shown[3];
     uint8_t* const shown_count;
     const int sample_cap, settled;
-    const Span columns;
+    Span columns;
+    SumKernels kernels;
     SumsResult result;
 
     /// Adds a row's samples to pixels that are not full; `moved`: but not to these, or null.
-    void addRow(ptrdiff_t at, ptrdiff_t from, const bool* moved) {
+    /// From output pixel `begin` of the tile on.
+    void addRow(ptrdiff_t at, ptrdiff_t from, const bool* moved, int begin = 0) {
         for (int i = 0; i < columns.hit_count; ++i) {
             const Hit hit = columns.hits[size_t(i)];
+            if (hit.output < begin) {
+                continue;
+            }
             const ptrdiff_t to = at + hit.output;
             if (sums.frames[to] >= sample_cap || (moved != nullptr && moved[hit.output])) {
                 continue;
@@ -88,6 +118,23 @@ struct Tile {
         }
     }
 
+    int addInLanes(ptrdiff_t at, ptrdiff_t from) {
+        SumRow row{.colour = {sums.colour[0] + at, sums.colour[1] + at, sums.colour[2] + at},
+                   .count = sums.count + at,
+                   .frames = sums.frames + at,
+                   .samples = {samples[0] + from, samples[1] + from, samples[2] + from},
+                   .shown = {shown[0] + at, shown[1] + at, shown[2] + at},
+                   .shown_count = shown_count + at,
+                   .pixel = columns.pixel.data(),
+                   .next = columns.next.data(),
+                   .width = columns.count,
+                   .sample_cap = sample_cap,
+                   .settled = settled};
+        const int done = kernels.add(row);
+        result.changed |= row.changed;
+        return done;
+    }
+
     void forgetRow(ptrdiff_t at) {
         std::memset(sums.frames + at, 0, size_t(columns.count) * sizeof(uint16_t));
         std::memset(sums.count + at, 0, size_t(columns.count) * sizeof(uint16_t));
@@ -97,13 +144,10 @@ struct Tile {
     /// the tile; −1: none.
     void growRow(ptrdiff_t at, ptrdiff_t from, bool has_samples) {
         if (has_samples) {
-            addRow(at, from, nullptr);
+            const int done = kernels.add != nullptr ? addInLanes(at, from) : 0;
+            addRow(at, from, nullptr, done);
         }
-        uint16_t* __restrict frames = sums.frames + at;
-        const uint16_t cap = uint16_t(sample_cap);
-        for (int i = 0; i < columns.count; ++i) {
-            frames[i] = uint16_t(frames[i] + uint16_t(frames[i] < cap));
-        }
+        ageRow(at);
     }
 
     /// Pixels that are disturbed lose their sums; those that moved also this frame's sample.
@@ -126,18 +170,28 @@ struct Tile {
         for (int i = 0; i < columns.count; ++i) {
             uint16_t& frames = sums.frames[at + i];
             frames = uint16_t(frames + (frames < sample_cap && !moved[size_t(i)] ? 1 : 0));
+            judge(frames, sums.count[at + i]);
         }
     }
 
-    void judgeRow(ptrdiff_t at) {
-        const uint16_t *frames = sums.frames + at, *counts = sums.count + at;
-        uint16_t least_frames = 65535, least_count = 65535;
-        for (int i = 0; i < columns.count; ++i) {
-            least_frames = std::min(least_frames, frames[i]);
-            least_count = std::min(least_count, counts[i]);
+    /// Counts the frame for a row in which nothing happens, and judges it.
+    void ageRow(ptrdiff_t at) {
+        AgeRow row{.frames = sums.frames + at,
+                   .count = sums.count + at,
+                   .width = columns.count,
+                   .sample_cap = sample_cap};
+        int i = kernels.age != nullptr ? kernels.age(row) : 0;
+        for (; i < row.width; ++i) {
+            row.frames[i] = uint16_t(row.frames[i] + (row.frames[i] < sample_cap ? 1 : 0));
+            row.least_frames = std::min<int>(row.least_frames, row.frames[i]);
+            row.least_count = std::min<int>(row.least_count, row.count[i]);
         }
-        result.finished &= least_frames >= sample_cap;
-        result.settled &= least_count >= settled;
+        judge(row.least_frames, row.least_count);
+    }
+
+    void judge(int frames, int count) {
+        result.finished &= frames >= sample_cap;
+        result.settled &= count >= settled;
     }
 };
 
@@ -158,7 +212,12 @@ SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillness stilln
               job.sample_cap,
               job.settled,
               Span(job.x, out.x0, out.x1, tile.x0, tile.x1, record.jitter_x_fx8),
+              // A mean of one sample is the sample, which lanes cannot divide.
+              job.settled >= 2 ? job.sum_kernels : SumKernels{},
               {}};
+    if (sums.kernels.add != nullptr) {
+        sums.columns.spread();
+    }
     const Span rows(job.y, out.y0, out.y1, tile.y0, tile.y1, record.jitter_y_fx8);
     std::array<uint8_t, kTileSize> disturbed;
     int next_hit = 0, tested = -1;
@@ -182,7 +241,6 @@ SumsResult accumulateTile(const Job& job, const TileRect& tile, Stillness stilln
         } else {
             sums.growRow(at, from, has_samples);
         }
-        sums.judgeRow(at);
     }
     return sums.result;
 }
