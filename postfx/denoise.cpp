@@ -127,7 +127,7 @@ struct FilterImages {
 /// Blocks on each side whose samples tell how light changed in one.
 constexpr int kChangeReach = 2;
 /// What few samples say of a change is less than there is.
-constexpr float kUnsureGain = 2.0f;
+constexpr float kUnsureGain = 4.0f;
 
 /// From the samples of a block and its neighbours. Where all of them changed by the same factor,
 /// that is what happened to the light; the rest is uncertain.
