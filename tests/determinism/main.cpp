@@ -17,12 +17,32 @@ namespace {
 struct Case {
     const char* scene;
     int width, height, frames;
+    const char* preset = "still";
+    int late_ratio_fx8 = 0;  ///< from frame 3 on; 0: the preset's
+
+    /// In the table.
+    std::string name() const {
+        return scene + (std::strcmp(preset, "still") == 0 ? "" : ":" + std::string(preset));
+    }
 };
 constexpr Case kCases[] = {
-    {"triangle", 65, 47, 4}, {"cubes", 321, 179, 6},   {"checker", 321, 179, 4},
-    {"fence", 321, 179, 4},  {"glass", 257, 131, 5},   {"lights", 257, 131, 4},
-    {"zoo", 321, 179, 6},    {"pan", 321, 179, 5},     {"courtyard", 321, 179, 4},
-    {"cornell", 129, 97, 4}, {"penumbra", 161, 93, 5}, {"contact", 129, 67, 3},
+    {"triangle", 65, 47, 4},
+    {"cubes", 321, 179, 6},
+    {"checker", 321, 179, 4},
+    {"fence", 321, 179, 4},
+    {"glass", 257, 131, 5},
+    {"lights", 257, 131, 4},
+    {"zoo", 321, 179, 6},
+    {"pan", 321, 179, 5},
+    {"courtyard", 321, 179, 4},
+    {"cornell", 129, 97, 4},
+    {"penumbra", 161, 93, 5},
+    {"contact", 129, 67, 3},
+    {"pan", 321, 179, 5, "quality"},
+    {"zoo", 321, 179, 6, "performance", 435},
+    {"fence", 257, 131, 4, "ultra"},
+    {"glass", 257, 131, 3, "bicubic"},
+    {"cubes", 257, 131, 3, "edge"},
 };
 
 struct Configuration {
@@ -67,9 +87,13 @@ SceneRecord render(const Case& c, const Scene& scene, const Configuration& confi
     settings.shading = configuration.shading;
     settings.planes = {.normal = true, .motion = true};
     settings.fresh_gbuffer = true;
+    settings.policy = findPreset(c.preset)->policy;
     FrameLoop loop(scene, settings, workers);
-    SceneRecord record{c.scene, {}};
+    SceneRecord record{c.name(), {}};
     for (int frame = 0; frame < c.frames; ++frame) {
+        if (frame == 3 && c.late_ratio_fx8 > 0) {
+            loop.setRatio(c.late_ratio_fx8);
+        }
         record.frames.push_back(hashOf(loop.render(frame)));
     }
     return record;
@@ -83,8 +107,8 @@ bool differs(const Case& c, const SceneRecord& expected, const SceneRecord& foun
         const std::string text =
             differenceLine(expected.frames[frame], found.frames[frame], tiles_x);
         if (!text.empty()) {
-            std::fprintf(stderr, "%s, frame %zu, %s\n    with %s\n", c.scene, frame, text.c_str(),
-                         configuration.text().c_str());
+            std::fprintf(stderr, "%s, frame %zu, %s\n    with %s\n", c.name().c_str(), frame,
+                         text.c_str(), configuration.text().c_str());
             return true;
         }
     }
@@ -116,7 +140,7 @@ int update(const Options& options) {
 
 const SceneRecord* find(const Table& table, const Case& c) {
     for (const SceneRecord& record : table) {
-        if (record.scene == c.scene && record.frames.size() == size_t(c.frames)) {
+        if (record.scene == c.name() && record.frames.size() == size_t(c.frames)) {
             return &record;
         }
     }
@@ -135,7 +159,7 @@ int check(const Options& options) {
         const SceneRecord* expected = find(*table, c);
         if (!scene || expected == nullptr) {
             std::fprintf(stderr, "%s: no such scene or not in the table, expected %d frames\n",
-                         c.scene, c.frames);
+                         c.name().c_str(), c.frames);
             return 2;
         }
         for (const Configuration& configuration : configurations(options.few)) {
