@@ -205,6 +205,24 @@ TEST_CASE("session: panes that upscale in time change their frames' size, and go
     CHECK(session.renderScale() == 100);
 }
 
+TEST_CASE("session: modes that upscale have every view, at the window's size", "[unit][session]") {
+    Workers workers(2);
+    for (const char* scene : {"cubes", "cornell"}) {
+        for (const char* mode : {"quality", "ultra", "bicubic"}) {
+            Session session(sceneNamed(scene), testSettings(), workers);
+            session.pane(0).mode = modeCalled(mode);
+            session.look().overlays.tiles = session.look().overlays.arrows = true;
+            session.pick(kTestWidth - 1, kTestHeight - 1);
+            for (const ViewInfo& info : allViews()) {
+                CAPTURE(scene, mode, info.name);
+                session.pane(0).view = info.view;
+                session.draw();
+                CHECK(session.draw().image.width == kTestWidth);
+            }
+        }
+    }
+}
+
 TEST_CASE("session: a picked pixel stays where it is when the panes' scale changes",
           "[unit][session]") {
     Workers workers(2);
