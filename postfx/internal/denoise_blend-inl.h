@@ -290,7 +290,8 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
             hn::Add(past_square, hn::Mul(hn::Sub(hn::Mul(bright, bright), past_square), share));
         store(hn::IfThenElseZero(surface, square), job.now.square[p] + at);
         storeByte(hn::IfThenElseZero(surface, hn::Div(one, share)), job.now.count[p] + at);
-        const VF drift = hn::Max(hn::Abs(hn::Sub(change.ratio[p], one)), change.unsure[p]);
+        const VF drift = hn::Max(hn::Abs(hn::Sub(change.ratio[p], one)),
+                                 hn::Mul(change.unsure[p], set(kDriftPart)));
         const VF bound = hn::IfThenElse(
             hn::Gt(drift, zero),
             hn::Min(set(255.0f), hn::Div(set(kAgeDrift), hn::Max(drift, set(1e-9f)))), set(255.0f));

@@ -205,7 +205,7 @@ void blendPixel(const Job& job, int x, int y) noexcept {
         const float past_square = found.square[p] * (change.ratio * change.ratio);
         job.now.square[p][at] = past_square + (bright * bright - past_square) * share;
         job.now.count[p][at] = uint8_t(int(1.0f / share + 0.5f));
-        const float drift = std::max(std::abs(change.ratio - 1.0f), change.unsure);
+        const float drift = std::max(std::abs(change.ratio - 1.0f), change.unsure * kDriftPart);
         const float bound = drift > 0 ? std::min(255.0f, kAgeDrift / drift) : 255.0f;
         const bool grown_up = still == kYoungFrames && found.count[p] <= float(kYoungFrames);
         const float older = std::min(found.age[p] + 1, grown_up ? float(kYoungKept) : 255.0f);

@@ -41,6 +41,8 @@ constexpr float kOutlier = 4.0f;
 
 /// Light may have drifted by this share of itself over the frames that TAA takes.
 constexpr float kAgeDrift = 0.06f;
+/// What is unsure of a change counts for so much of that.
+constexpr float kDriftPart = 0.25f;
 
 /// Of a pixel: light is Rec. 709 linear.
 inline float luminance(float red, float green, float blue) {
