@@ -2,6 +2,7 @@
 // anti-aliased.
 
 #include "engine/internal/frame_loop_state.h"
+#include "postfx/place_light.h"
 
 namespace still {
 
@@ -27,6 +28,10 @@ void FrameLoop::State::addLight(const DrawList& list, const FrameView& view, boo
         if (keeps) {
             stage.denoiser.run(gbuffer, clean, frame, settings.simd, workers);
             clean = stage.denoiser.light();
+        }
+        if (keeps && reconstructs) {
+            placeLight(gbuffer, clean, view.jitter_x_fx8, view.jitter_y_fx8, stage.placed, workers);
+            clean = planesOf(stage.placed);
         }
         remodulate(gbuffer, clean, {}, settings.simd, workers);
     });

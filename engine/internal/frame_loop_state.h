@@ -37,7 +37,8 @@ inline LightPlanes planesOf(const LightImages& images) {
 /// Of light that is sampled.
 struct LightStage {
     LightSampler sampler;
-    LightImages noisy;  ///< one sample a pixel
+    LightImages noisy;   ///< one sample a pixel
+    LightImages placed;  ///< denoised, where the samples lie; of frames that are upscaled in time
     LightChangeImages change;
     Denoiser denoiser;
 };
