@@ -156,7 +156,9 @@ BlockChange changeOf(ImageView<const uint16_t> before, ImageView<const uint16_t>
             off += std::abs(float(now.row(j)[i]) - ratio * float(before.row(j)[i]));
         }
     }
-    return {ratio, std::min(1.0f, kUnsureGain * off / float(sum_most))};
+    // What is gone may have had another hue than what stays.
+    const float unsure = std::max(kUnsureGain * off / float(sum_most), std::abs(ratio - 1.0f));
+    return {ratio, std::min(1.0f, unsure)};
 }
 
 /// The parts of a tile's light that are to be filtered, a bit for each.
