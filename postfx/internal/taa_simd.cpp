@@ -31,6 +31,7 @@
 #include "postfx/internal/gather_fit-inl.h"
 #include "postfx/internal/gather-inl.h"
 #include "postfx/internal/upscale_fetch-inl.h"
+#include "postfx/internal/upscale_fit-inl.h"
 #include "postfx/internal/upscale-inl.h"
 // clang-format on
 #endif

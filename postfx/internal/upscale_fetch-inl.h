@@ -60,14 +60,6 @@ HWY_INLINE AxisSite besideSite(VS whole, VS part_fx8, int which, int ratio_fx8) 
                   hn::Sub(set(which * 256), hn::And(part_fx8, set(255))), ratio_fx8);
 }
 
-/// The samples that count for a lane's output pixels.
-struct OutputTaps {
-    static constexpr int kMost = kMaxUpscaleRing + 4;
-    VS weight[kMost], ex[kMost], ey[kMost], behind[kMost];
-    VS colour[3][kMost];
-    int count;
-};
-
 }  // namespace HWY_NAMESPACE
 }  // namespace still::taa
 HWY_AFTER_NAMESPACE();
