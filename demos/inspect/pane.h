@@ -46,7 +46,8 @@ class Pane {
     void forgetTimes() { times_ = {}; }
     const FrameResult& result() const { return result_; }
 
-    /// The G-buffer sample that the mode read for the frame shown, with all planes.
+    /// The G-buffer sample that the mode read for the frame shown, with all planes. Of modes that
+    /// upscale: drawn at the picture's size.
     const GBuffer& sample();
     ImageView<const uint16_t> overdraw();
     /// Encodes a plane of the story; black where the mode has no past.
