@@ -61,8 +61,8 @@ class LightSampler {
     /// no instance moved, and lighting and materials are what they were.
     bool changes(LightChangeImages& out, Workers& workers);
 
-    /// Writes `out`, which gets the view's size: the part of the light that is traced. Adds the
-    /// highlights of traced lights to the G-buffer's colour. Needs the normal plane. `wanted` as in
+    /// Writes `out`, which gets the view's size: all light that SampledLight holds. Adds the
+    /// highlights of these lights to the G-buffer's colour. Needs the normal plane. `wanted` as in
     /// Rasterizer::rasterize(): elsewhere all planes stay. `keep`: for changes() of the next frame.
     void sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers,
                 std::span<const uint8_t> wanted = {});
