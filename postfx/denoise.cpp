@@ -215,20 +215,31 @@ void copyParts(const FilterPlanes& in, const FilterPlanes& out, int parts, ptrdi
     }
 }
 
-/// The least of the 3×3 around each pixel: what owns a pixel may be a neighbour's surface.
-void leastAround(ImageView<const uint8_t> in, ImageView<uint8_t> out, const TileRect& tile) {
-    uint8_t least[kTileSize + 2];
-    const int x0 = std::max(tile.x0 - 1, 0), x1 = std::min(tile.x1 + 1, in.width);
+/// Of the nearest sample around each pixel, which owns it in the resolve: what lies behind may be
+/// lit anew without an edge losing its anti-aliasing. What reflects nothing is long lit as it is.
+void agesOfOwners(const GBuffer& gbuffer, ImageView<const uint8_t> age, ImageView<uint8_t> out,
+                  const TileRect& tile) {
+    const bool has_albedo = gbuffer.planes.albedo;
+    // Larger is nearer; of equally near ones that which is lit anew.
+    const auto keyAt = [&](int x, int y) {
+        const bool dark =
+            has_albedo && (gbuffer.albedo_red.at(x, y) | gbuffer.albedo_green.at(x, y) |
+                           gbuffer.albedo_blue.at(x, y)) == 0;
+        const int own = dark ? 255 : age.row(y)[x];
+        return uint64_t{gbuffer.depth.at(x, y)} << 8 | uint64_t(255 - own);
+    };
+    uint64_t columns[kTileSize + 2];
+    const int x0 = std::max(tile.x0 - 1, 0), x1 = std::min(tile.x1 + 1, age.width);
     for (int y = tile.y0; y < tile.y1; ++y) {
-        const uint8_t* rows[3] = {in.row(std::max(y - 1, 0)), in.row(y),
-                                  in.row(std::min(y + 1, in.height - 1))};
+        const int above = std::max(y - 1, 0), below = std::min(y + 1, age.height - 1);
         for (int x = x0; x < x1; ++x) {
-            least[x - x0] = std::min(std::min(rows[0][x], rows[1][x]), rows[2][x]);
+            columns[x - x0] = std::max(std::max(keyAt(x, above), keyAt(x, y)), keyAt(x, below));
         }
-        uint8_t* to = out.row(y);
         for (int x = tile.x0; x < tile.x1; ++x) {
             const int left = std::max(x - 1, x0) - x0, right = std::min(x + 1, x1 - 1) - x0;
-            to[x] = std::min(std::min(least[left], least[x - x0]), least[right]);
+            const uint64_t nearest =
+                std::max(std::max(columns[left], columns[x - x0]), columns[right]);
+            out.row(y)[x] = uint8_t(255 - (nearest & 255));
         }
     }
 }
@@ -258,7 +269,7 @@ struct Denoiser::State {
     std::array<Image<float>, 2> step;
     std::array<std::vector<BlockChange>, kParts> change;
     std::vector<int> noisy_parts, fresh_parts;  ///< of each tile
-    Image<uint8_t> light_age, least_age;        ///< of each pixel; of the 3×3 around it
+    Image<uint8_t> light_age, owner_age;        ///< of each pixel; of what owns it
     std::vector<uint8_t> young;                 ///< tiles with pixels of some age
     bool any_young = false;
 
@@ -299,7 +310,7 @@ void Denoiser::State::resize(int new_width, int new_height) {
         image.resize(width, height);
     }
     light_age.resize(width, height);
-    least_age.resize(width, height);
+    owner_age.resize(width, height);
     noisy_parts.resize(size_t(tiles));
     fresh_parts.resize(size_t(tiles));
     young.resize(size_t(tiles));
@@ -400,7 +411,7 @@ void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const Denoi
         s.noisy_parts[size_t(tile)] = noisyParts(job.first, job.stride, rect);
         s.fresh_parts[size_t(tile)] = freshParts(job, rect);
         if (s.any_young) {
-            leastAround(s.light_age.view(), s.least_age.view(), rect);
+            agesOfOwners(gbuffer, s.light_age.view(), s.owner_age.view(), rect);
         }
     });
     s.filter(job, kernels, workers);
@@ -415,7 +426,7 @@ LightPlanes Denoiser::light() const {
 
 ImageView<const uint8_t> Denoiser::lightAge() const {
     const State& s = *state_;
-    return s.any_young ? s.least_age.view() : ImageView<const uint8_t>();
+    return s.any_young ? s.owner_age.view() : ImageView<const uint8_t>();
 }
 
 void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint8_t> wanted,

@@ -50,7 +50,8 @@ class Denoiser {
     Denoiser(const Denoiser&) = delete;
     Denoiser& operator=(const Denoiser&) = delete;
 
-    /// `gbuffer` has the planes normal, motion and albedo; its colours are not read. A changed size
+    /// `gbuffer` has the planes normal and motion; its colours are not read, and of its albedo only
+    /// where there is none. A changed size
     /// is a reset.
     void run(const GBuffer& gbuffer, const LightPlanes& noisy, const DenoiseFrame& frame,
              SimdTarget simd, Workers& workers);

@@ -28,6 +28,7 @@ void makeWall(GBuffer& gbuffer) {
             gbuffer.depth.at(x, y) = depth;
             gbuffer.normal.at(x, y) = 0;
             gbuffer.motion.at(x, y) = {};
+            gbuffer.albedo_red.at(x, y) = kColourOne;
             gbuffer.depth_before.at(x, y) = logDepth16(depth);
         }
     }
