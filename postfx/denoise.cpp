@@ -429,8 +429,7 @@ ImageView<const uint8_t> Denoiser::lightAge() const {
     return s.any_young ? s.owner_age.view() : ImageView<const uint8_t>();
 }
 
-void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint8_t> wanted,
-                SimdTarget, Workers& workers) {
+void remodulate(GBuffer& gbuffer, const LightPlanes& light, Workers& workers) {
     const ColourTargets to{gbuffer.red.view(), gbuffer.green.view(), gbuffer.blue.view()};
     const auto add = [](const uint16_t* albedo, const uint16_t* direct, const uint16_t* indirect,
                         uint16_t* out, int count) {
@@ -442,9 +441,6 @@ void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint
     };
     workers.parallelFor(gbuffer.tiles_x * gbuffer.tiles_y, 1, [&](int begin, int end, int) {
         for (int tile = begin; tile < end; ++tile) {
-            if (!wanted.empty() && wanted[size_t(tile)] == 0) {
-                continue;
-            }
             const int x0 = tile % gbuffer.tiles_x * kTileSize;
             const int y0 = tile / gbuffer.tiles_x * kTileSize;
             const int width = std::min(kTileSize, gbuffer.width() - x0);

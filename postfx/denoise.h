@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "postfx/colour_targets.h"
 #include "postfx/taa.h"
@@ -37,9 +36,6 @@ struct DenoiseFrame {
     /// Empty views: no light, object or material changed since the frame before, so that all light
     /// is what it was; the camera may have moved.
     LightChange change{};
-    /// Per tile, as the rasterizer was asked for it: 0 where G-buffer and light are an earlier
-    /// frame's, and what was handed out stays. Empty: all tiles are this frame's.
-    std::span<const uint8_t> wanted{};
 };
 
 /// Owns the history. run() is called once per frame, in order.
@@ -51,8 +47,7 @@ class Denoiser {
     Denoiser& operator=(const Denoiser&) = delete;
 
     /// `gbuffer` has the planes normal and motion; its colours are not read, and of its albedo only
-    /// where there is none. A changed size
-    /// is a reset.
+    /// where there is none. A changed size is a reset.
     void run(const GBuffer& gbuffer, const LightPlanes& noisy, const DenoiseFrame& frame,
              SimdTarget simd, Workers& workers);
 
@@ -66,9 +61,7 @@ class Denoiser {
     std::unique_ptr<State> state_;
 };
 
-/// G-buffer colour += albedo · (direct + indirect), saturated; in the tiles that are `wanted` (as
-/// in DenoiseFrame).
-void remodulate(GBuffer& gbuffer, const LightPlanes& light, std::span<const uint8_t> wanted,
-                SimdTarget simd, Workers& workers);
+/// G-buffer colour += albedo · (direct + indirect), saturated.
+void remodulate(GBuffer& gbuffer, const LightPlanes& light, Workers& workers);
 
 }  // namespace still

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <vector>
 
+#include "postfx/internal/evidence.h"
 #include "postfx/internal/gather_story.h"
 #include "postfx/internal/kernels.h"
 #include "postfx/internal/memory.h"
@@ -27,17 +28,6 @@ using taa::TileJitter;
 using taa::TileMemory;
 using taa::TileRect;
 
-bool anyOf(std::span<const uint64_t> surfaces) {
-    return std::any_of(surfaces.begin(), surfaces.end(), [](uint64_t word) { return word != 0; });
-}
-
-bool changesShading(const TaaFrame& frame) {
-    return frame.shading_changed || anyOf(frame.changed_surfaces);
-}
-
-constexpr size_t kSurfaces = size_t(kSurfaceMask) + 1;
-constexpr uint32_t kLongAgo = 255;
-
 }  // namespace
 
 struct Taa::State {
@@ -52,12 +42,10 @@ struct Taa::State {
     int tiles_x = 0;
     int sample_cap = 0;
     std::vector<TileMemory> tiles;
-    std::vector<uint8_t> wanted;         ///< plan()
-    std::vector<uint8_t> changed;        ///< changedTiles()
-    std::vector<uint32_t> change_age;    ///< empty until something changes
-    std::vector<uint32_t> turning;       ///< Job::turning; empty: null
+    std::vector<uint8_t> wanted;   ///< plan()
+    std::vector<uint8_t> changed;  ///< changedTiles()
+    taa::SurfaceChanges surfaces;
     ImageView<const uint8_t> light_age;  ///< of the last resolve, where it matters
-    int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
     bool first = true;         ///< no frame was resolved since the last reset
     bool shows_first = false;  ///< the image is a first frame's
@@ -66,21 +54,14 @@ struct Taa::State {
     TileJitter jitter;         ///< … and where its samples lay
     SpatialFilter spatial;
 
-    TileRect rectOf(int tile) const {
-        const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
-        return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
-    }
+    TileRect rectOf(int tile) const { return taa::tileRect(tile, width, height); }
 
     size_t tileCount() const {
         return size_t(tiles_x) * size_t((height + kTileSize - 1) / kTileSize);
     }
 
     void begin(int new_width, int new_height, bool reset, const TaaSettings& settings);
-    void noteChanges(const TaaFrame& frame, bool now);
-    bool planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats);
-    bool noteLightAge(ImageView<const uint8_t> age, int past, Workers& workers);
     bool finished(int cap) const;
-    void noteTurning(std::span<const uint64_t> surfaces);
     Job makeJob(const GBuffer& gbuffer, const TaaSettings& settings);
     PixelSource sourceAt(int x, int y) const;
     template <class Tell>
@@ -88,7 +69,6 @@ struct Taa::State {
     void showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTarget simd,
                    Workers& workers);
     void forgetStarted(Workers& workers);
-    void noteJitter(SlotPlanes& slot) const;
     void advanceRing(const TaaFrame& frame, bool shading_changed, Workers& workers);
     void keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile);
 };
@@ -100,7 +80,7 @@ void Taa::State::begin(int new_width, int new_height, bool reset, const TaaSetti
     if (resized || reset || ring.size() != size_t(settings.ring)) {
         frames = 0;
         first = true;
-        since_change = settings.ring;
+        surfaces.forget(settings.ring);
     }
     if (resized || ring.size() != size_t(settings.ring)) {
         width = new_width;
@@ -128,93 +108,9 @@ void Taa::State::begin(int new_width, int new_height, bool reset, const TaaSetti
     }
 }
 
-/// Keeps for each surface how many kept frames ago its shading changed; `now`: some did.
-void Taa::State::noteChanges(const TaaFrame& frame, bool now) {
-    if (!now && since_change >= int(ring.size())) {
-        return;
-    }
-    if (change_age.empty() || since_change >= int(ring.size())) {
-        change_age.assign(kSurfaces, kLongAgo);
-    }
-    for (uint32_t& age : change_age) {
-        age = age < kLongAgo - 1 ? age + 1 : kLongAgo;
-    }
-    if (frame.shading_changed) {
-        std::fill(change_age.begin(), change_age.end(), 0u);
-    }
-    for (size_t word = 0; word < frame.changed_surfaces.size(); ++word) {
-        for (size_t bit = 0; bit < 64; ++bit) {
-            if (((frame.changed_surfaces[word] >> bit) & 1) != 0) {
-                change_age[word * 64 + bit] = 0;
-            }
-        }
-    }
-    since_change = now ? 0 : since_change + 1;
-}
-
-/// Notes what each tile needs; whether any needs the ring. Where nothing happens, the ring is of
-/// use only until it is full and the sums are shown: later frames would say the same.
-bool Taa::State::planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats) {
-    const bool overwritten = repeats >= int(ring.size());
-    bool any = false;
-    for (size_t i = 0; i < tiles.size(); ++i) {
-        TileMemory& tile = tiles[i];
-        tile.tested = shading_changed || facts[i].moved || tile.young;
-        tile.quiet = tile.tested ? 0 : tile.quiet;
-        tile.keeps =
-            first || facts[i].camera_moved || !tile.settled || tile.quiet < int(ring.size());
-        tile.keeps &= !overwritten || tile.tested || facts[i].camera_moved;
-        any |= tile.keeps;
-    }
-    return any;
-}
-
-/// Which tiles have pixels that were lit otherwise within the last `past` frames; whether any has.
-bool Taa::State::noteLightAge(ImageView<const uint8_t> age, int past, Workers& workers) {
-    if (age.empty()) {
-        for (TileMemory& tile : tiles) {
-            tile.young = false;
-        }
-        return false;
-    }
-    assert(age.width == width && age.height == height && age.stride == shown_count.view().stride);
-    workers.parallelFor(int(tiles.size()), 1, [&](int begin, int end, int) {
-        for (int tile = begin; tile < end; ++tile) {
-            const TileRect rect = rectOf(tile);
-            uint8_t least = 255;
-            for (int y = rect.y0; y < rect.y1; ++y) {
-                const uint8_t* row = age.row(y) + rect.x0;
-                for (int x = 0; x < rect.x1 - rect.x0; ++x) {
-                    least = std::min(least, row[x]);
-                }
-            }
-            tiles[size_t(tile)].young = least < past;
-        }
-    });
-    return std::any_of(tiles.begin(), tiles.end(), [](const TileMemory& t) { return t.young; });
-}
-
 /// Without motion or change the picture stays.
 bool Taa::State::finished(int cap) const {
-    return !first && cap == sample_cap &&
-           std::all_of(tiles.begin(), tiles.end(),
-                       [](const TileMemory& t) { return t.summed && t.finished; });
-}
-
-static bool allStill(const GBuffer& gbuffer) {
-    return std::all_of(gbuffer.tiles.begin(), gbuffer.tiles.end(),
-                       [](const TileFacts& facts) { return facts.still(); });
-}
-
-void Taa::State::noteTurning(std::span<const uint64_t> surfaces) {
-    turning.clear();
-    if (!anyOf(surfaces)) {
-        return;
-    }
-    turning.resize(kSurfaces);
-    for (size_t i = 0; i < std::min(surfaces.size() * 64, kSurfaces); ++i) {
-        turning[i] = uint32_t((surfaces[i / 64] >> (i % 64)) & 1);
-    }
+    return !first && cap == sample_cap && taa::allFinished(tiles);
 }
 
 Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
@@ -223,14 +119,7 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     job.height = height;
     job.tiles_x = tiles_x;
     job.stride = gbuffer.red.view().stride;
-    job.now.colour[0] = gbuffer.red.view().data;
-    job.now.colour[1] = gbuffer.green.view().data;
-    job.now.colour[2] = gbuffer.blue.view().data;
-    job.now.depth = gbuffer.depth.view().data;
-    job.now.id = gbuffer.id.view().data;
-    job.now.normal = gbuffer.planes.normal ? gbuffer.normal.view().data : nullptr;
-    job.now.motion = gbuffer.motion.view().data;
-    job.now.depth_before = gbuffer.depth_before.view().data;
+    job.now = taa::currentOf(gbuffer);
     job.frames = frames;
     for (int k = 0; k < frames; ++k) {
         const int slot = (cursor + settings.ring - k) % settings.ring;
@@ -245,9 +134,9 @@ Job Taa::State::makeJob(const GBuffer& gbuffer, const TaaSettings& settings) {
     }
     job.sums.count = count.view().data;
     job.shown_count = shown_count.view().data;
-    job.change_age = since_change < settings.ring ? change_age.data() : nullptr;
+    job.change_age = surfaces.ages(settings.ring);
     job.start_age = started.ages();
-    job.turning = turning.empty() ? nullptr : turning.data();
+    job.turning = surfaces.turning();
     job.light_age = light_age.data;
     job.sample_cap = settings.sample_cap;
     job.settled = std::min(taa::kSettled, settings.sample_cap);
@@ -273,28 +162,12 @@ void Taa::State::forgetStarted(Workers& workers) {
 /// The cursor's slot becomes this frame's, and what is counted in kept frames goes on.
 void Taa::State::advanceRing(const TaaFrame& frame, bool shading_changed, Workers& workers) {
     const int slots = int(ring.size());
-    noteChanges(frame, shading_changed);
-    noteTurning(frame.turning_surfaces);
+    surfaces.note(frame, shading_changed, slots);
     forgetStarted(workers);
     started.countAges(first, slots);
     cursor = (cursor + 1) % slots;
     frames = std::min(frames + 1, slots);
-    SlotPlanes& slot = ring[size_t(cursor)];
-    slot.jitter_x_fx8 = frame.jitter_x_fx8;
-    slot.jitter_y_fx8 = frame.jitter_y_fx8;
-    noteJitter(slot);
-}
-
-/// Of the tiles that are kept; the others' samples lie where they lay.
-void Taa::State::noteJitter(SlotPlanes& slot) const {
-    const TileJitter now{int16_t(slot.jitter_x_fx8), int16_t(slot.jitter_y_fx8)};
-    slot.apart = false;
-    for (size_t i = 0; i < tiles.size(); ++i) {
-        if (tiles[i].keeps) {
-            slot.tile_jitter[i] = now;
-        }
-        slot.apart |= !slot.tile_jitter[i].sameAs(now);
-    }
+    taa::noteJitter(ring[size_t(cursor)], frame, tiles);
 }
 
 void Taa::State::keepAndSum(const Job& job, const taa::TileKernels& kernels, int tile) {
@@ -341,9 +214,7 @@ bool Taa::rest(const TaaSettings& settings) {
         return false;
     }
     s.started.noteRest();
-    for (TileMemory& tile : s.tiles) {
-        tile.changed = tile.keeps = tile.adds = false;
-    }
+    taa::restTiles(s.tiles);
     s.gathered = false;
     return true;
 }
@@ -353,7 +224,8 @@ std::span<const uint8_t> Taa::plan(int width, int height, std::span<const TileFa
     State& s = *state_;
     s.begin(width, height, frame.reset, settings);
     assert(facts.size() == s.tiles.size());
-    s.planTiles(facts, !s.first && changesShading(frame), frame.repeats);
+    taa::planTiles(s.tiles, facts, s.first, !s.first && taa::changesShading(frame), frame.repeats,
+                   settings.ring);
     const bool same_cap = settings.sample_cap == s.sample_cap;
     s.wanted.resize(s.tiles.size());
     std::transform(s.tiles.begin(), s.tiles.end(), s.wanted.begin(), [&](const TileMemory& tile) {
@@ -369,15 +241,16 @@ void Taa::resolve(const GBuffer& gbuffer, const TaaFrame& frame, const TaaSettin
     assert(settings.ring >= 1 && settings.ring <= kMaxRing);
     State& s = *state_;
     s.begin(gbuffer.width(), gbuffer.height(), frame.reset, settings);
-    const bool shading_changed = !s.first && changesShading(frame);
+    const bool shading_changed = !s.first && taa::changesShading(frame);
     const int past = std::max(settings.sample_cap, settings.ring);
-    const bool young = !s.first && s.noteLightAge(frame.light_age, past, workers);
-    if (!s.first && !shading_changed && !young && allStill(gbuffer) && rest(settings)) {
+    const bool young = !s.first && taa::noteLightAge(s.tiles, frame.light_age, past, workers);
+    if (!s.first && !shading_changed && !young && taa::allStill(gbuffer) && rest(settings)) {
         return;
     }
     s.started.note(gbuffer, s.first, workers);
     const bool first = s.first;
-    if (s.planTiles(gbuffer.tiles, shading_changed, frame.repeats)) {
+    if (taa::planTiles(s.tiles, gbuffer.tiles, first, shading_changed, frame.repeats,
+                       settings.ring)) {
         s.advanceRing(frame, shading_changed, workers);
     } else if (first) {
         s.started.countAges(first, settings.ring);

@@ -21,17 +21,6 @@ using upscale::Axis;
 using upscale::Job;
 using upscale::tilesAcross;
 
-bool changesShading(const TaaFrame& frame) {
-    return frame.shading_changed ||
-           std::any_of(frame.changed_surfaces.begin(), frame.changed_surfaces.end(),
-                       [](uint64_t word) { return word != 0; });
-}
-
-bool allStill(const GBuffer& gbuffer) {
-    return std::all_of(gbuffer.tiles.begin(), gbuffer.tiles.end(),
-                       [](const TileFacts& facts) { return facts.still(); });
-}
-
 }  // namespace
 
 void TemporalUpscaler::State::keepAndSum(const Job& job, const taa::TileKernels& kernels,
@@ -101,9 +90,7 @@ bool TemporalUpscaler::rest(int frame_width, int frame_height, const UpscaleSett
         return false;
     }
     s.started.noteRest();
-    for (TileMemory& tile : s.tiles) {
-        tile.changed = tile.keeps = tile.adds = false;
-    }
+    taa::restTiles(s.tiles);
     return true;
 }
 
@@ -114,7 +101,8 @@ std::span<const uint8_t> TemporalUpscaler::plan(int frame_width, int frame_heigh
     State& s = *state_;
     s.begin(frame_width, frame_height, frame.reset, settings);
     assert(facts.size() == s.tiles.size());
-    s.planTiles(facts, !s.first && changesShading(frame), frame.repeats);
+    taa::planTiles(s.tiles, facts, s.first, !s.first && taa::changesShading(frame), frame.repeats,
+                   settings.ring);
     s.planDrawing(settings.sample_cap == s.sample_cap);
     return s.wanted;
 }
@@ -126,17 +114,18 @@ void TemporalUpscaler::resolve(const GBuffer& gbuffer, const TaaFrame& frame,
     assert(settings.width >= gbuffer.width() && settings.height >= gbuffer.height());
     State& s = *state_;
     s.begin(gbuffer.width(), gbuffer.height(), frame.reset, settings);
-    const bool shading_changed = !s.first && changesShading(frame);
+    const bool shading_changed = !s.first && taa::changesShading(frame);
     const int past = std::max(settings.sample_cap, settings.ring);
-    const bool young = !s.first && s.noteLightAge(frame.light_age, past);
-    if (!shading_changed && !young && allStill(gbuffer) &&
+    const bool young = !s.first && taa::noteLightAge(s.tiles, frame.light_age, past, workers);
+    if (!shading_changed && !young && taa::allStill(gbuffer) &&
         rest(gbuffer.width(), gbuffer.height(), settings)) {
         return;
     }
     s.light_age = young ? frame.light_age : ImageView<const uint8_t>{};
     s.started.note(gbuffer, s.first, workers);
     const bool first = s.first;
-    if (s.planTiles(gbuffer.tiles, shading_changed, frame.repeats)) {
+    if (taa::planTiles(s.tiles, gbuffer.tiles, first, shading_changed, frame.repeats,
+                       settings.ring)) {
         s.advanceRing(frame, shading_changed);
     }
     Job job = s.makeJob(gbuffer, settings);

@@ -106,7 +106,7 @@ struct LightSampler::State {
     void clearBlock(LightImages& out, int x0, int y0, int x1, int y1, bool keep);
     void keepSample(const Scratch& s, int i, const Rgb16& direct, const Rgb16& indirect);
     void traceAgain(int begin, int end, LightChangeImages& out, Scratch& s) const;
-    void forgetTiles(std::span<const uint8_t> wanted, Workers& workers);
+    void forgetKept(Workers& workers);
     LitPoint carried(const KeptSample& sample) const;
 };
 
@@ -245,22 +245,17 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
     }
 }
 
-/// What was kept in tiles that are sampled anew: of a block that the picture's border cuts, the
-/// pixel to be kept may lie outside.
-void LightSampler::State::forgetTiles(std::span<const uint8_t> wanted, Workers& workers) {
-    const int tiles_x = (kept_width + kTileSize - 1) / kTileSize;
+/// Of a block that the picture's border cuts, the pixel to be kept may lie outside, and what was
+/// kept before would stay.
+void LightSampler::State::forgetKept(Workers& workers) {
     workers.parallelFor(int(kept.size()), 8192, [&](int begin, int end, int) {
         for (size_t i = size_t(begin); i < size_t(end); ++i) {
-            const int tile = kept[i].y / kTileSize * tiles_x + kept[i].x / kTileSize;
-            if (wanted.empty() || wanted[size_t(tile)] != 0) {
-                kept[i].surface = 0;
-            }
+            kept[i].surface = 0;
         }
     });
 }
 
-void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers,
-                          std::span<const uint8_t> wanted) {
+void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers) {
     State& state = *state_;
     const FrameView& view = *state.view;
     assert(gbuffer.planes.normal && gbuffer.width() == view.width);
@@ -274,7 +269,7 @@ void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers
         if (!same_size) {
             state.kept.assign(rows * size_t(state.blocksAcross()), {});
         }
-        state.forgetTiles(wanted, workers);
+        state.forgetKept(workers);
     }
     const SampledLight& sampled = state.scene.list->lighting.sampled;
     if (sampled.ambient == AmbientLight::screen_occlusion) {
@@ -287,9 +282,6 @@ void LightSampler::sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers
     workers.parallelFor(tiles_x * tiles_y, 1, [&](int begin, int end, int worker) {
         State::Scratch& scratch = state.scratch[size_t(worker)];
         for (int tile = begin; tile < end; ++tile) {
-            if (!wanted.empty() && wanted[size_t(tile)] == 0) {
-                continue;
-            }
             const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
             const PixelNumbers::Tile random = state.numbers.tileOf(x0, y0, sample);
             for (int y = y0; y < std::min(y0 + kTileSize, view.height); y += kBlock) {

@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
@@ -62,10 +61,9 @@ class LightSampler {
     bool changes(LightChangeImages& out, Workers& workers);
 
     /// Writes `out`, which gets the view's size: all light that SampledLight holds. Adds the
-    /// highlights of these lights to the G-buffer's colour. Needs the normal plane. `wanted` as in
-    /// Rasterizer::rasterize(): elsewhere all planes stay. `keep`: for changes() of the next frame.
-    void sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers,
-                std::span<const uint8_t> wanted = {});
+    /// highlights of these lights to the G-buffer's colour. Needs the normal plane. `keep`: for
+    /// changes() of the next frame.
+    void sample(GBuffer& gbuffer, LightImages& out, bool keep, Workers& workers);
 
   private:
     struct State;

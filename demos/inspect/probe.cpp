@@ -50,7 +50,7 @@ void Probe::addLight(const DrawList& list, const FrameView& view) {
     remodulate(gbuffer_,
                {{l.direct_red.view(), l.direct_green.view(), l.direct_blue.view()},
                 {l.indirect_red.view(), l.indirect_green.view(), l.indirect_blue.view()}},
-               {}, simd_, workers_);
+               workers_);
 }
 
 ImageView<const uint16_t> Probe::overdraw() {

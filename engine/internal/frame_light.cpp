@@ -33,7 +33,7 @@ void FrameLoop::State::addLight(const DrawList& list, const FrameView& view, boo
             placeLight(gbuffer, clean, view.jitter_x_fx8, view.jitter_y_fx8, stage.placed, workers);
             clean = planesOf(stage.placed);
         }
-        remodulate(gbuffer, clean, {}, settings.simd, workers);
+        remodulate(gbuffer, clean, workers);
     });
 }
 

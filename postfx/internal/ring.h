@@ -102,6 +102,11 @@ struct Job {
 struct TileRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
+inline TileRect tileRect(int tile, int width, int height) {
+    const int across = (width + kTileSize - 1) / kTileSize;
+    const int x0 = tile % across * kTileSize, y0 = tile / across * kTileSize;
+    return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
+}
 
 /// The tile of a slot with `tile_jitter` that holds a pixel, or the nearest pixel of the picture.
 inline const TileJitter& jitterOf(const Job& job, const SlotIn& slot, int column, int row) {

@@ -10,16 +10,12 @@ namespace still {
 namespace {
 
 using taa::SlotPlanes;
-using taa::TileJitter;
 using taa::TileMemory;
 using taa::TileRect;
 using upscale::Axis;
 using upscale::Job;
 using upscale::KeptFrame;
 using upscale::tilesAcross;
-
-constexpr size_t kSurfaces = size_t(kSurfaceMask) + 1;
-constexpr uint32_t kLongAgo = 255;
 
 }  // namespace
 
@@ -48,7 +44,7 @@ void TemporalUpscaler::State::begin(int new_width, int new_height, bool reset,
     if (resized || reset) {
         frames = 0;
         first = true;
-        since_change = settings.ring;
+        surfaces.forget(settings.ring);
     }
     if (resized) {
         resizeImage(settings);
@@ -63,72 +59,6 @@ void TemporalUpscaler::State::begin(int new_width, int new_height, bool reset,
     if (first || other_size || settings.sample_cap < sample_cap) {
         tiles.assign(tileCount(), TileMemory{});
     }
-}
-
-/// Keeps for each surface how many kept frames ago its shading changed; `now`: some did.
-void TemporalUpscaler::State::noteChanges(const TaaFrame& frame, bool now) {
-    const int slots = int(ring.size());
-    if (!now && since_change >= slots) {
-        return;
-    }
-    if (change_age.empty() || since_change >= slots) {
-        change_age.assign(kSurfaces, kLongAgo);
-    }
-    for (uint32_t& age : change_age) {
-        age = age < kLongAgo - 1 ? age + 1 : kLongAgo;
-    }
-    if (frame.shading_changed) {
-        std::fill(change_age.begin(), change_age.end(), 0u);
-    }
-    for (size_t i = 0; i < frame.changed_surfaces.size() * 64; ++i) {
-        if (((frame.changed_surfaces[i / 64] >> (i % 64)) & 1) != 0) {
-            change_age[i] = 0;
-        }
-    }
-    since_change = now ? 0 : since_change + 1;
-}
-
-void TemporalUpscaler::State::noteTurning(std::span<const uint64_t> surfaces) {
-    turning.clear();
-    if (std::all_of(surfaces.begin(), surfaces.end(), [](uint64_t word) { return word == 0; })) {
-        return;
-    }
-    turning.resize(kSurfaces);
-    for (size_t i = 0; i < std::min(surfaces.size() * 64, kSurfaces); ++i) {
-        turning[i] = uint32_t((surfaces[i / 64] >> (i % 64)) & 1);
-    }
-}
-
-/// Which tiles have pixels that were lit otherwise within the last `past` frames; whether any has.
-bool TemporalUpscaler::State::noteLightAge(ImageView<const uint8_t> age, int past) {
-    bool any = false;
-    for (size_t i = 0; i < tiles.size(); ++i) {
-        const TileRect rect = rectOf(int(i));
-        uint8_t least = 255;
-        for (int y = rect.y0; !age.empty() && y < rect.y1; ++y) {
-            least = std::min(least, *std::min_element(age.row(y) + rect.x0, age.row(y) + rect.x1));
-        }
-        tiles[i].young = least < std::min(past, 255);
-        any |= tiles[i].young;
-    }
-    return any;
-}
-
-/// Notes what each tile needs; whether any needs the ring: see Taa.
-bool TemporalUpscaler::State::planTiles(std::span<const TileFacts> facts, bool shading_changed,
-                                        int repeats) {
-    const bool overwritten = repeats >= int(ring.size());
-    bool any = false;
-    for (size_t i = 0; i < tiles.size(); ++i) {
-        TileMemory& tile = tiles[i];
-        tile.tested = shading_changed || facts[i].moved || tile.young;
-        tile.quiet = tile.tested ? 0 : tile.quiet;
-        tile.keeps =
-            first || facts[i].camera_moved || !tile.settled || tile.quiet < int(ring.size());
-        tile.keeps &= !overwritten || tile.tested || facts[i].camera_moved;
-        any |= tile.keeps;
-    }
-    return any;
 }
 
 /// Sums read a pixel beside their tiles.
@@ -153,9 +83,7 @@ void TemporalUpscaler::State::planDrawing(bool same_cap) {
 
 /// Without motion or change the picture stays.
 bool TemporalUpscaler::State::finished(int cap) const {
-    return !first && cap == sample_cap &&
-           std::all_of(tiles.begin(), tiles.end(),
-                       [](const TileMemory& t) { return t.summed && t.finished; });
+    return !first && cap == sample_cap && taa::allFinished(tiles);
 }
 
 /// taa::forgetStarted(). Before this frame is kept: the cursor's is still the last one.
@@ -186,23 +114,10 @@ void TemporalUpscaler::State::forgetStarted() {
     }
 }
 
-/// Of the tiles that are kept; the others' samples lie where they lay.
-void TemporalUpscaler::State::noteJitter(SlotPlanes& slot) {
-    const TileJitter now{int16_t(slot.jitter_x_fx8), int16_t(slot.jitter_y_fx8)};
-    slot.apart = false;
-    for (size_t i = 0; i < tiles.size(); ++i) {
-        if (tiles[i].keeps) {
-            slot.tile_jitter[i] = now;
-        }
-        slot.apart |= !slot.tile_jitter[i].sameAs(now);
-    }
-}
-
 /// The cursor's slot becomes this frame's, and what is counted in kept frames goes on.
 void TemporalUpscaler::State::advanceRing(const TaaFrame& frame, bool shading_changed) {
     const int slots = int(ring.size());
-    noteChanges(frame, shading_changed);
-    noteTurning(frame.turning_surfaces);
+    surfaces.note(frame, shading_changed, slots);
     forgetStarted();
     started.countAges(first, slots);
     cursor = (cursor + 1) % slots;
@@ -214,9 +129,7 @@ void TemporalUpscaler::State::advanceRing(const TaaFrame& frame, bool shading_ch
         kept.planes.resize(frame_width, frame_height);
         kept.planes.tile_jitter.assign(tileCount(), {});
     }
-    kept.planes.jitter_x_fx8 = frame.jitter_x_fx8;
-    kept.planes.jitter_y_fx8 = frame.jitter_y_fx8;
-    noteJitter(kept.planes);
+    taa::noteJitter(kept.planes, frame, tiles);
 }
 
 /// Samples with which a still pixel's mean is nearer to the truth than what is gathered: a few more
@@ -234,14 +147,7 @@ Job TemporalUpscaler::State::makeJob(const GBuffer& gbuffer, const UpscaleSettin
     frame.height = frame_height;
     frame.tiles_x = tilesAcross(frame_width);
     frame.stride = gbuffer.red.view().stride;
-    frame.now.colour[0] = gbuffer.red.view().data;
-    frame.now.colour[1] = gbuffer.green.view().data;
-    frame.now.colour[2] = gbuffer.blue.view().data;
-    frame.now.depth = gbuffer.depth.view().data;
-    frame.now.id = gbuffer.id.view().data;
-    frame.now.normal = gbuffer.planes.normal ? gbuffer.normal.view().data : nullptr;
-    frame.now.motion = gbuffer.motion.view().data;
-    frame.now.depth_before = gbuffer.depth_before.view().data;
+    frame.now = taa::currentOf(gbuffer);
     job.frames = frames;
     for (int k = 0; k < frames; ++k) {
         const int slot = (cursor + settings.ring - k) % settings.ring;
@@ -256,9 +162,9 @@ Job TemporalUpscaler::State::makeJob(const GBuffer& gbuffer, const UpscaleSettin
     --frame.frames;
     frame.record = ring[size_t(cursor)].planes.pointers<taa::SlotOut>();
     frame.hint = hint.view().data;
-    frame.change_age = since_change < settings.ring ? change_age.data() : nullptr;
+    frame.change_age = surfaces.ages(settings.ring);
     frame.start_age = started.ages();
-    frame.turning = turning.empty() ? nullptr : turning.data();
+    frame.turning = surfaces.turning();
     frame.light_age = light_age.data;
     frame.camera_moved = !gbuffer.tiles.empty() && gbuffer.tiles[0].camera_moved;
     frame.centre_tolerance = upscale::kCentreTolerance;

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "postfx/internal/evidence.h"
 #include "postfx/internal/kernels.h"
 #include "postfx/internal/memory.h"
 #include "postfx/internal/started.h"
@@ -50,22 +51,15 @@ struct TemporalUpscaler::State {
     std::vector<taa::TileMemory> tiles;  ///< of the frame
     std::vector<uint8_t> wanted;         ///< plan()
     std::vector<uint8_t> changed;        ///< changedTiles()
-    std::vector<uint32_t> change_age;    ///< empty until something changes
-    std::vector<uint32_t> turning;       ///< taa::Job::turning; empty: null
+    taa::SurfaceChanges surfaces;
     ImageView<const uint8_t> light_age;
-    int since_change = 0;  ///< frames since any surface changed; counts to the ring's length
     taa::StartedSurfaces started;
     bool first = true;  ///< no frame was resolved since the last reset
     SpatialFilter spatial;
     SpatialUpscaler enlarger;
     std::array<Image<uint16_t>, 3> filtered;  ///< a first frame
 
-    taa::TileRect rectOf(int tile) const {
-        const int across = upscale::tilesAcross(frame_width);
-        const int x0 = tile % across * kTileSize, y0 = tile / across * kTileSize;
-        return {x0, y0, std::min(x0 + kTileSize, frame_width),
-                std::min(y0 + kTileSize, frame_height)};
-    }
+    taa::TileRect rectOf(int tile) const { return taa::tileRect(tile, frame_width, frame_height); }
     size_t tileCount() const {
         return size_t(upscale::tilesAcross(frame_width)) *
                size_t(upscale::tilesAcross(frame_height));
@@ -73,15 +67,10 @@ struct TemporalUpscaler::State {
 
     void begin(int new_width, int new_height, bool reset, const UpscaleSettings& settings);
     void resizeImage(const UpscaleSettings& settings);
-    void noteChanges(const TaaFrame& frame, bool now);
-    void noteTurning(std::span<const uint64_t> surfaces);
-    bool noteLightAge(ImageView<const uint8_t> age, int past);
-    bool planTiles(std::span<const TileFacts> facts, bool shading_changed, int repeats);
     void planDrawing(bool same_cap);
     bool finished(int cap) const;
     void advanceRing(const TaaFrame& frame, bool shading_changed);
     void forgetStarted();
-    void noteJitter(taa::SlotPlanes& slot);
     upscale::Job makeJob(const GBuffer& gbuffer, const UpscaleSettings& settings);
     void keepAndSum(const upscale::Job& job, const taa::TileKernels& kernels, int tile);
     void noteChanged(const upscale::Job& job);

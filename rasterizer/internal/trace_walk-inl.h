@@ -2,8 +2,8 @@
 // pushChildren(), pushNearestLast() and blockMask(). Included in the middle of a namespace, once
 // for each instruction set and once for the scalar truth.
 
-/// Whether the block's triangles `mask` have a hole at each place they are hit: those that have
-/// none stay.
+/// Of the block's triangles `mask` those that are some, and have no hole where they are hit. By
+/// exact rules nothing hits an empty place, but no index should depend on how a build rounds.
 inline uint32_t withoutHoles(const SceneTree& scene, uint32_t instance, const TriangleBlock& block,
                              const BlockHits& hits, uint32_t mask, uint32_t random) {
     uint32_t rest = mask;
@@ -11,8 +11,9 @@ inline uint32_t withoutHoles(const SceneTree& scene, uint32_t instance, const Tr
         const int i = std::countr_zero(rest);
         rest &= rest - 1;
         const uint32_t triangle = block.triangle[i];
-        if ((triangle & kHolesBit) != 0 &&
-            holeAt(scene, instance, triangle & ~kHolesBit, hits.b1[i], hits.b2[i], random)) {
+        if (triangle == kNoTriangle ||
+            ((triangle & kHolesBit) != 0 &&
+             holeAt(scene, instance, triangle & ~kHolesBit, hits.b1[i], hits.b2[i], random))) {
             mask &= ~(1u << i);
         }
     }

@@ -412,22 +412,6 @@ TEST_CASE("light sampler: a moving object changes light where its shadow was, an
     CHECK(same > 32 * 32 * 3 / 4);
 }
 
-TEST_CASE("light sampler: tiles that are not wanted keep their light") {
-    TestScene scene = floorScene();
-    scene.lighting.sampled.spheres = {{{0, 3, 0}, 1.0f, {4, 4, 4}}};
-    FrameView view = viewOfFloor(100, 64);
-    Sampling run;
-    run.frame(scene, view);
-    const auto left = run.light.direct_red.at(20, 30), right = run.light.direct_red.at(80, 30);
-    scene.lighting.sampled.spheres[0].colour = {1, 1, 1};
-    const DrawList list = scene.list();
-    run.sampler.setUp(list, view, SimdTarget::scalar, run.workers);
-    const uint8_t wanted[2] = {0, 1};
-    run.sampler.sample(run.gbuffer, run.light, true, run.workers, wanted);
-    CHECK(run.light.direct_red.at(20, 30) == left);
-    CHECK(run.light.direct_red.at(80, 30) < right);
-}
-
 TEST_CASE("light random: the first samples of a pixel, and a frame's neighbours, are even") {
     using namespace still::internal;
     const PixelNumbers pixels;
