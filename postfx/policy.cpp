@@ -16,8 +16,9 @@ constexpr TaaPolicy gathering(int ring) {
     return policy;
 }
 
-constexpr TaaPolicy upscaling(int ratio_fx8, UpscaleMethod upscaler) {
-    TaaPolicy policy;
+/// Rings of temporal upscaling are as long as the time that it saves allows: postfx/README.md.
+constexpr TaaPolicy upscaling(int ratio_fx8, UpscaleMethod upscaler, int ring = 8) {
+    TaaPolicy policy = gathering(ring);
     policy.ratio_fx8 = ratio_fx8;
     policy.upscaler = upscaler;
     return policy;
@@ -28,10 +29,12 @@ constexpr std::array<TaaPreset, 9> kOurs{{
     {"still", "ours: gathers 8 raw frames along the motion", gathering(8)},
     {"fast", "ours, from 4 frames", gathering(4)},
     {"tiny", "ours, from 2 frames", gathering(2)},
-    {"quality", "ours, rendered at 1/1.5 per axis", upscaling(kRatio1_5, UpscaleMethod::temporal)},
-    {"balanced", "ours, rendered at 1/1.7 per axis", upscaling(kRatio1_7, UpscaleMethod::temporal)},
+    {"quality", "ours, rendered at 1/1.5 per axis",
+     upscaling(kRatio1_5, UpscaleMethod::temporal, 7)},
+    {"balanced", "ours, rendered at 1/1.7 per axis",
+     upscaling(kRatio1_7, UpscaleMethod::temporal, 7)},
     {"performance", "ours, rendered at 1/2 per axis", upscaling(kRatio2, UpscaleMethod::temporal)},
-    {"ultra", "ours, rendered at 1/3 per axis", upscaling(kRatio3, UpscaleMethod::temporal)},
+    {"ultra", "ours, rendered at 1/3 per axis", upscaling(kRatio3, UpscaleMethod::temporal, 9)},
     {"bicubic", "still at 1/1.5 per axis, enlarged by Catmull-Rom",
      upscaling(kRatio1_5, UpscaleMethod::bicubic)},
     {"edge", "still at 1/1.5 per axis, enlarged along edges (AMD's FSR 1 EASU)",

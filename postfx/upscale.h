@@ -16,7 +16,7 @@ namespace still {
 
 /// Frames are at most this many times smaller than the image, per axis.
 constexpr int kMaxUpscale = 3;
-constexpr int kMaxUpscaleRing = 32;
+constexpr int kMaxUpscaleRing = 16;
 
 struct UpscaleSettings {
     SimdTarget simd = bestSimdTarget();

@@ -52,16 +52,13 @@ int FrameLoop::State::ratioAt(int frame) const {
     return ratio_fx8;
 }
 
-/// A pixel of the picture gets fewer of a frame's samples than a native one, so it looks back
-/// farther, by as many frames as the time that upscaling saves allows; the same at all ratios, so
-/// that the history stays when the ratio changes. Figures: postfx/README.md.
+/// The ring is the same at all ratios, so that the history stays when the ratio changes.
 UpscaleSettings FrameLoop::State::upscaleSettings() const {
-    const int ring = settings.policy.ring + (settings.policy.ring + 7) / 8;
     return {.simd = settings.simd,
             .width = settings.width,
             .height = settings.height,
             .sample_cap = sampleCap(),
-            .ring = std::min(ring, kMaxUpscaleRing)};
+            .ring = settings.policy.ring};
 }
 
 std::span<const uint8_t> FrameLoop::State::plan(std::span<const TileFacts> facts,
