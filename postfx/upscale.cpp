@@ -110,7 +110,7 @@ std::span<const uint8_t> TemporalUpscaler::plan(int frame_width, int frame_heigh
 void TemporalUpscaler::resolve(const GBuffer& gbuffer, const TaaFrame& frame,
                                const UpscaleSettings& settings, Workers& workers) {
     assert(gbuffer.planes.motion);
-    assert(settings.ring >= 1 && settings.ring <= kMaxUpscaleRing);
+    assert(settings.ring >= 1 && settings.ring <= kMaxRing);
     assert(settings.width >= gbuffer.width() && settings.height >= gbuffer.height());
     State& s = *state_;
     s.begin(gbuffer.width(), gbuffer.height(), frame.reset, settings);

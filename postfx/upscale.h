@@ -16,7 +16,6 @@ namespace still {
 
 /// Frames are at most this many times smaller than the image, per axis.
 constexpr int kMaxUpscale = 3;
-constexpr int kMaxUpscaleRing = 16;
 
 struct UpscaleSettings {
     SimdTarget simd = bestSimdTarget();
@@ -26,7 +25,7 @@ struct UpscaleSettings {
     /// Frames after which a still image is finished (the length of the jitter sequence, whose
     /// offsets are in the frame's pixels): 1 … 4096.
     int sample_cap = 256;
-    /// Raw frames that pixels in motion are made from, this one included: 1 … kMaxUpscaleRing.
+    /// Raw frames that pixels in motion are made from, this one included: 1 … kMaxRing.
     int ring = 16;
 };
 

@@ -65,9 +65,6 @@ struct StillSums {
     uint8_t* count = nullptr;
 };
 
-/// Upscaling looks at more frames than kMaxRing.
-constexpr int kMaxSlots = 32;
-
 /// Everything a kernel needs for any tile of a frame.
 struct Job {
     int width = 0, height = 0;
@@ -76,7 +73,7 @@ struct Job {
     Current now;
     int frames = 1;           ///< valid slots, this frame's included: 1 … kMaxRing
     SlotOut record;           ///< this frame's slot …
-    SlotIn slot[kMaxSlots];   ///< … which is also slot[0]; slot[k] is k frames old
+    SlotIn slot[kMaxRing];    ///< … which is also slot[0]; slot[k] is k frames old
     int16_t* hint = nullptr;  ///< of this frame's owners: see ownerHint()
     StillSums sums;
     uint16_t* shown[3] = {};         ///< the resolved image

@@ -20,11 +20,11 @@ struct OutputBlock {
 struct PixelGroup {
     WindowLanes window;
     Walker walker;
-    WayOf<kMaxUpscaleRing> way;  ///< of the window's owner
+    WayOf<kMaxRing> way;  ///< of the window's owner
 };
 
 HWY_INLINE void stepLimited(const Job& job, int k, int frames, const LayerLanes& layer, VS limit,
-                            Walker& walker, WayOf<kMaxUpscaleRing>& way) {
+                            Walker& walker, WayOf<kMaxRing>& way) {
     walker.alive = hn::And(walker.alive, hn::Gt(limit, set(k)));
     stepWay(job, k, k + 1 == frames, layer, set(32767), walker, way);
 }
@@ -38,7 +38,7 @@ HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, in
         const int x = tile.x0 + g * kHalves;
         const MS pixels = lanesUnder(tile.x1 - x);
         windowOf(job, x, y, pixels, groups[g].window,
-                 {kMaxUpscaleRing, upscale::kCalmFrames, upscale::kFlatFrames});
+                 {kMaxRing, upscale::kCalmFrames, upscale::kFlatFrames});
         groups[g].walker.start(x, y, groups[g].window.owner, pixels);
         groups[g].way.frames = 0;
     }
@@ -51,7 +51,7 @@ HWY_NOINLINE void lookAlongFrame(const Job& job, const TileRect& tile, int y, in
         }
     }
     for (int g = 0; g < count; ++g) {
-        const WayOf<kMaxUpscaleRing>& way = groups[g].way;
+        const WayOf<kMaxRing>& way = groups[g].way;
         for (int k = 1; k < way.frames; ++k) {
             prefetchStop(job, job.slot[k], way.stop[k].place, g + 1 == count, offset_y + 128);
         }
@@ -287,7 +287,7 @@ HWY_INLINE VS pick(MS second, VS first, VS other) {
 /// visitSamples() for all output pixels of a block.
 template <class Keep>
 HWY_NOINLINE void collectOutput(const upscale::Job& job, const OutputBlock& block,
-                                const WayOf<kMaxUpscaleRing>& way, Keep keep, OutputTaps* taps) {
+                                const WayOf<kMaxRing>& way, Keep keep, OutputTaps* taps) {
     const Job& frame = job.frame;
     const int rows = block.y1 - block.y0;
     for (int t = 0; t < rows * kMaxUpscale; ++t) {
@@ -437,7 +437,7 @@ HWY_NOINLINE void gatherBlock(const upscale::Job& job, const OutputBlock& block,
         const int frames = std::min(upscale::kFarFrames, job.frame.frames);
         Walker walker;
         walker.start(block.x, block.y, window.far, window.apart);
-        WayOf<kMaxUpscaleRing> way;
+        WayOf<kMaxRing> way;
         for (int k = 0; k < frames; ++k) {
             stepLimited(job.frame, k, frames, window.far, window.frames, walker, way);
         }

@@ -7,7 +7,7 @@ namespace HWY_NAMESPACE {
 
 /// The samples that count for a lane's output pixels.
 struct OutputTaps {
-    static constexpr int kMost = kMaxUpscaleRing + 4;
+    static constexpr int kMost = kMaxRing + 4;
     VS weight[kMost], ex[kMost], ey[kMost], behind[kMost];
     VS colour[3][kMost];
     int count;

@@ -83,9 +83,9 @@ struct Job {
     /// at most, its sums and its image are null.
     taa::Job frame;
     Axis x, y;
-    int frames = 1;              ///< valid slots, this frame's included
-    Slot slot[kMaxUpscaleRing];  ///< slot[k] is k frames old
-    ptrdiff_t stride = 0;        ///< of the image's planes, in elements
+    int frames = 1;        ///< valid slots, this frame's included
+    Slot slot[kMaxRing];   ///< slot[k] is k frames old
+    ptrdiff_t stride = 0;  ///< of the image's planes, in elements
     Sums sums;
     SumKernels sum_kernels;          ///< null: one pixel after the other
     uint16_t* shown[3] = {};         ///< the image

@@ -48,7 +48,7 @@ struct Way {
         int x_fx8 = 0, y_fx8 = 0;
         Motion motion;
     };
-    Stop stop[kMaxUpscaleRing];
+    Stop stop[kMaxRing];
     int frames = 0;
 };
 
@@ -60,7 +60,7 @@ struct Window {
     bool moved = false;
     bool layered = false;
     bool apart = false;
-    int frames = kMaxUpscaleRing;
+    int frames = kMaxRing;
     int slide = 0;
 };
 
@@ -130,11 +130,11 @@ Owner ownerOf(const taa::Job& job, int x, int y) {
 }
 
 int framesOf(const taa::Job& job, int x, int y, const Owner& seen, bool layered) {
-    int frames = kMaxUpscaleRing;
+    int frames = kMaxRing;
     if (!layered && !seen.inferred) {
         frames = lowContrast(job, x, y, taa::kFlatShift)   ? kFlatFrames
                  : lowContrast(job, x, y, taa::kCalmShift) ? kCalmFrames
-                                                           : kMaxUpscaleRing;
+                                                           : kMaxRing;
     }
     if (std::max(std::abs(seen.motion.x_fx8), std::abs(seen.motion.y_fx8)) > taa::kFast) {
         frames = std::min(frames, taa::kFastFrames);
@@ -249,7 +249,7 @@ struct Tap {
     int rgb[3];
 };
 struct Taps {
-    Tap tap[kMaxUpscaleRing + 3];
+    Tap tap[kMaxRing + 3];
     int count = 0;
     taa::Moments moments;
 
@@ -289,7 +289,8 @@ void visitSamples(const Job& job, const Way& way, Offset offset, Visit&& visit) 
             const int ex = slot.x.toImage(dx), ey = slot.y.toImage(dy);
             const int weight = narrowWeight(ex, ey) + (k == 0 ? tentWeight(dx, dy) : kFarWeight);
             if (weight > 0 && inside(slot, ix, iy) && jitter.sameAs(jitterAt(slot, ix, iy))) {
-                visit(k, slot.in, iy * slot.stride + ix, stop.motion, weight, upscale::placeOf(ex), upscale::placeOf(ey));
+                visit(k, slot.in, iy * slot.stride + ix, stop.motion, weight, upscale::placeOf(ex),
+                      upscale::placeOf(ey));
             }
         }
     }

@@ -47,7 +47,7 @@ constexpr int placeOf(int e_fx8) {
     return std::clamp(e_fx8 >> 2, -kFarthest, kFarthest);
 }
 /// All weights of a pixel, before and after the tilt.
-constexpr int kMaxTotal = kMaxUpscaleRing * (kSampleWeight + kFarWeight) * 3 / 2 + 4 * 160 * 2;
+constexpr int kMaxTotal = kMaxRing * (kSampleWeight + kFarWeight) * 3 / 2 + 4 * 160 * 2;
 static_assert(kMaxTotal <= taa::kMaxTotal);
 
 }  // namespace still::upscale
