@@ -24,6 +24,20 @@ using denoising::Other;
 using denoising::Past;
 using denoising::TileRect;
 
+template <class T, size_t kCount>
+void resizeAll(std::array<Image<T>, kCount>& images, int width, int height) {
+    for (Image<T>& image : images) {
+        image.resize(width, height);
+    }
+}
+
+template <class T, size_t kCount>
+void pointTo(T* (&pointers)[kCount], std::array<Image<T>, kCount>& images) {
+    for (size_t i = 0; i < kCount; ++i) {
+        pointers[i] = images[i].view().data;
+    }
+}
+
 struct PastImages {
     std::array<Image<float>, kChannels> light;
     std::array<Image<float>, kParts> square;
@@ -33,33 +47,22 @@ struct PastImages {
     Image<uint16_t> surface, depth;
 
     void resize(int width, int height) {
-        const auto all = [&](auto& images) {
-            for (auto& image : images) {
-                image.resize(width, height);
-            }
-        };
-        all(light);
-        all(square);
-        all(count);
-        all(age);
-        all(normal);
+        resizeAll(light, width, height);
+        resizeAll(square, width, height);
+        resizeAll(count, width, height);
+        resizeAll(age, width, height);
+        resizeAll(normal, width, height);
         still.resize(width, height);
         surface.resize(width, height);
         depth.resize(width, height);
     }
     Past pointers() {
         Past past;
-        for (size_t c = 0; c < kChannels; ++c) {
-            past.light[c] = light[c].view().data;
-        }
-        for (size_t p = 0; p < kParts; ++p) {
-            past.square[p] = square[p].view().data;
-            past.count[p] = count[p].view().data;
-            past.age[p] = age[p].view().data;
-        }
-        for (size_t c = 0; c < 3; ++c) {
-            past.normal[c] = normal[c].view().data;
-        }
+        pointTo(past.light, light);
+        pointTo(past.square, square);
+        pointTo(past.count, count);
+        pointTo(past.age, age);
+        pointTo(past.normal, normal);
         past.still = still.view().data;
         past.surface = surface.view().data;
         past.depth = depth.view().data;
@@ -75,25 +78,17 @@ struct OtherImages {
     Image<uint32_t> stored;
 
     void resize(int width, int height) {
-        for (auto& image : light) {
-            image.resize(width, height);
-        }
-        for (size_t p = 0; p < kParts; ++p) {
-            square[p].resize(width, height);
-            count[p].resize(width, height);
-        }
+        resizeAll(light, width, height);
+        resizeAll(square, width, height);
+        resizeAll(count, width, height);
         surface.resize(width, height);
         stored.resize(width, height);
     }
     Other pointers() {
         Other other;
-        for (size_t c = 0; c < kChannels; ++c) {
-            other.light[c] = light[c].view().data;
-        }
-        for (size_t p = 0; p < kParts; ++p) {
-            other.square[p] = square[p].view().data;
-            other.count[p] = count[p].view().data;
-        }
+        pointTo(other.light, light);
+        pointTo(other.square, square);
+        pointTo(other.count, count);
         other.surface = surface.view().data;
         other.stored = stored.view().data;
         return other;
@@ -105,21 +100,13 @@ struct FilterImages {
     std::array<Image<float>, kParts> variance;
 
     void resize(int width, int height) {
-        for (auto& image : light) {
-            image.resize(width, height);
-        }
-        for (auto& image : variance) {
-            image.resize(width, height);
-        }
+        resizeAll(light, width, height);
+        resizeAll(variance, width, height);
     }
     FilterPlanes pointers() {
         FilterPlanes planes;
-        for (size_t c = 0; c < kChannels; ++c) {
-            planes.light[c] = light[c].view().data;
-        }
-        for (size_t p = 0; p < kParts; ++p) {
-            planes.variance[p] = variance[p].view().data;
-        }
+        pointTo(planes.light, light);
+        pointTo(planes.variance, variance);
         return planes;
     }
 };

@@ -374,9 +374,7 @@ void Taa::rejections(const GBuffer& gbuffer, const RejectionTargets& out, Worker
 }
 
 bool Taa::converged() const {
-    return !state_->first &&
-           std::all_of(state_->tiles.begin(), state_->tiles.end(),
-                       [](const TileMemory& t) { return t.summed && t.finished && !t.changed; });
+    return !state_->first && taa::allConverged(state_->tiles);
 }
 
 }  // namespace still

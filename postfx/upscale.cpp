@@ -180,9 +180,7 @@ ImageView<const uint8_t> TemporalUpscaler::sampleCount() const {
 }
 
 bool TemporalUpscaler::converged() const {
-    return !state_->first &&
-           std::all_of(state_->tiles.begin(), state_->tiles.end(),
-                       [](const TileMemory& t) { return t.summed && t.finished && !t.changed; });
+    return !state_->first && taa::allConverged(state_->tiles);
 }
 
 std::vector<TileWork> TemporalUpscaler::tileWork() const {

@@ -18,7 +18,7 @@ void FrameLoop::State::addLight(const DrawList& list, const FrameView& view, boo
     DenoiseFrame frame{.reset = reset};
     timed(times.light_ms, [&] {
         stage.sampler.setUp(list, view, settings.simd, workers);
-        if (keeps && stage.sampler.changes(stage.change, workers) && !reset) {
+        if (keeps && !reset && stage.sampler.changes(stage.change, workers)) {
             frame.change = changeOf(stage.change);
         }
         stage.sampler.sample(gbuffer, stage.noisy, keeps, workers);

@@ -130,6 +130,11 @@ bool allFinished(std::span<const TileMemory> tiles) {
                        [](const TileMemory& t) { return t.summed && t.finished; });
 }
 
+bool allConverged(std::span<const TileMemory> tiles) {
+    return allFinished(tiles) &&
+           std::none_of(tiles.begin(), tiles.end(), [](const TileMemory& t) { return t.changed; });
+}
+
 void restTiles(std::span<TileMemory> tiles) {
     for (TileMemory& tile : tiles) {
         tile.changed = tile.keeps = tile.adds = false;

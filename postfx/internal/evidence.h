@@ -59,6 +59,8 @@ void noteJitter(SlotPlanes& slot, const TaaFrame& frame, std::span<const TileMem
 
 /// All tiles' sums are of the present view, and complete.
 bool allFinished(std::span<const TileMemory> tiles);
+/// … and this frame changed nothing.
+bool allConverged(std::span<const TileMemory> tiles);
 
 /// A frame in which nothing is done.
 void restTiles(std::span<TileMemory> tiles);

@@ -4,24 +4,12 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "postfx/internal/layer.h"
 #include "postfx/internal/owner.h"
 #include "postfx/internal/rules.h"
 #include "postfx/story.h"
 
 namespace still::taa {
-
-/// A surface on its way back through the frames.
-struct Layer {
-    int surface = 0, depth = 0;
-    int step = 0;  ///< change of depth per frame into the past
-    int tolerance = 0;
-    Motion motion;
-
-    int depthAt(int k) const { return std::clamp(depth + step * k, 0, 65535); }
-    int toleranceAt(int k) const {
-        return tolerance + (std::min(std::abs(step) * k, 32767) >> kStepShift);
-    }
-};
 
 /// What the window shows: its owner, and the farthest sample when that lies behind the owner.
 struct Window {

@@ -8,58 +8,8 @@
 namespace still::taa {
 namespace {
 
-Layer layerOf(int surface, int depth, int expected, Motion motion, int slope) {
-    return {surface, depth, heldStep(expected - depth), kDepthTolerance + kSlopeFactor * slope,
-            motion};
-}
-
-TapLayer placeOf(const Layer& layer, int k, int surface, int depth) {
-    const int difference = depth - layer.depthAt(k);
-    const int tolerance = layer.toleranceAt(k);
-    if (surface == layer.surface && std::abs(difference) <= tolerance) {
-        return TapLayer::same;
-    }
-    return difference > tolerance ? TapLayer::nearer : TapLayer::farther;
-}
-
 bool inside(const Job& job, int x, int y) {
     return x >= 0 && x < job.width && y >= 0 && y < job.height;
-}
-
-ptrdiff_t farthestInWindow(const Job& job, int x, int y) {
-    // Columns first; ties: middle before top before bottom, middle before left before right.
-    const auto better = [&](ptrdiff_t a, ptrdiff_t b) {
-        return logDepth16(job.now.depth[b]) < logDepth16(job.now.depth[a]) ? b : a;
-    };
-    const auto column = [&](int cx) {
-        const ptrdiff_t centre = y * job.stride + cx;
-        ptrdiff_t best = centre;
-        best = y > 0 ? better(best, centre - job.stride) : best;
-        return y + 1 < job.height ? better(best, centre + job.stride) : best;
-    };
-    ptrdiff_t best = column(x);
-    best = x > 0 ? better(best, column(x - 1)) : best;
-    return x + 1 < job.width ? better(best, column(x + 1)) : best;
-}
-
-int slideOf(Motion a, Motion b) {
-    return std::max(std::abs(a.x_fx8 - b.x_fx8), std::abs(a.y_fx8 - b.y_fx8));
-}
-
-/// Every channel of the window spans at most contrastBound().
-bool lowContrast(const Job& job, int x, int y, int shift) {
-    bool low_contrast = true;
-    for (const uint16_t* plane : job.now.colour) {
-        int low = 65535, high = 0;
-        for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
-            for (int i = std::max(x - 1, 0); i <= std::min(x + 1, job.width - 1); ++i) {
-                low = std::min<int>(low, plane[j * job.stride + i]);
-                high = std::max<int>(high, plane[j * job.stride + i]);
-            }
-        }
-        low_contrast &= high - low <= contrastBound(high, shift);
-    }
-    return low_contrast;
 }
 
 Window lookAround(const Job& job, int x, int y, const Owner& seen) {

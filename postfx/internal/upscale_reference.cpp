@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "postfx/internal/layer.h"
 #include "postfx/internal/owner.h"
 #include "postfx/internal/upscale_gather.h"
 #include "postfx/internal/upscale_rules.h"
@@ -10,36 +11,9 @@
 namespace still::upscale {
 namespace {
 
+using taa::Layer;
 using taa::Owner;
 using taa::plusOffset;
-
-/// A surface on its way back through the frames.
-struct Layer {
-    int surface = 0, depth = 0;
-    int step = 0;  ///< change of depth per frame into the past
-    int tolerance = 0;
-    Motion motion;
-
-    int depthAt(int k) const { return std::clamp(depth + step * k, 0, 65535); }
-    int toleranceAt(int k) const {
-        return tolerance + (std::min(std::abs(step) * k, 32767) >> taa::kStepShift);
-    }
-};
-
-enum class Place { same, nearer, farther };
-
-Place placeOf(const Layer& layer, int k, int surface, int depth) {
-    const int difference = depth - layer.depthAt(k);
-    const int tolerance = layer.toleranceAt(k);
-    if (surface == layer.surface && std::abs(difference) <= tolerance) {
-        return Place::same;
-    }
-    return difference > tolerance ? Place::nearer : Place::farther;
-}
-
-int slideOf(Motion a, Motion b) {
-    return std::max(std::abs(a.x_fx8 - b.x_fx8), std::abs(a.y_fx8 - b.y_fx8));
-}
 
 /// Where a layer was in each frame, in 1/256 of that frame's pixels, and how it came there from the
 /// frame after.
@@ -78,38 +52,6 @@ taa::TileJitter jitterAt(const Slot& slot, int column, int row) {
     return slot.in.tile_jitter[y * ((slot.x.frame + kTileSize - 1) / kTileSize) + x];
 }
 
-/// Every channel of the window spans at most contrastBound().
-bool lowContrast(const taa::Job& job, int x, int y, int shift) {
-    bool low_contrast = true;
-    for (const uint16_t* plane : job.now.colour) {
-        int low = 65535, high = 0;
-        for (int j = std::max(y - 1, 0); j <= std::min(y + 1, job.height - 1); ++j) {
-            for (int i = std::max(x - 1, 0); i <= std::min(x + 1, job.width - 1); ++i) {
-                low = std::min<int>(low, plane[j * job.stride + i]);
-                high = std::max<int>(high, plane[j * job.stride + i]);
-            }
-        }
-        low_contrast &= high - low <= taa::contrastBound(high, shift);
-    }
-    return low_contrast;
-}
-
-ptrdiff_t farthestInWindow(const taa::Job& job, int x, int y) {
-    // Columns first; ties: middle before top before bottom, middle before left before right.
-    const auto better = [&](ptrdiff_t a, ptrdiff_t b) {
-        return logDepth16(job.now.depth[b]) < logDepth16(job.now.depth[a]) ? b : a;
-    };
-    const auto column = [&](int cx) {
-        const ptrdiff_t centre = y * job.stride + cx;
-        ptrdiff_t best = centre;
-        best = y > 0 ? better(best, centre - job.stride) : best;
-        return y + 1 < job.height ? better(best, centre + job.stride) : best;
-    };
-    ptrdiff_t best = column(x);
-    best = x > 0 ? better(best, column(x - 1)) : best;
-    return x + 1 < job.width ? better(best, column(x + 1)) : best;
-}
-
 /// The pixel's owner as it was recorded.
 Owner ownerOf(const taa::Job& job, int x, int y) {
     const ptrdiff_t at = y * job.stride + x;
@@ -132,9 +74,9 @@ Owner ownerOf(const taa::Job& job, int x, int y) {
 int framesOf(const taa::Job& job, int x, int y, const Owner& seen, bool layered) {
     int frames = kMaxRing;
     if (!layered && !seen.inferred) {
-        frames = lowContrast(job, x, y, taa::kFlatShift)   ? kFlatFrames
-                 : lowContrast(job, x, y, taa::kCalmShift) ? kCalmFrames
-                                                           : kMaxRing;
+        frames = taa::lowContrast(job, x, y, taa::kFlatShift)   ? kFlatFrames
+                 : taa::lowContrast(job, x, y, taa::kCalmShift) ? kCalmFrames
+                                                                : kMaxRing;
     }
     if (std::max(std::abs(seen.motion.x_fx8), std::abs(seen.motion.y_fx8)) > taa::kFast) {
         frames = std::min(frames, taa::kFastFrames);
@@ -184,20 +126,16 @@ Window lookAround(const Job& job, int x, int y) {
     const taa::Job& frame = job.frame;
     const Owner seen = ownerOf(frame, x, y);
     Window window;
-    window.owner = {seen.surface, seen.depth, taa::heldStep(seen.expected - seen.depth),
-                    taa::kDepthTolerance + taa::kSlopeFactor * seen.slope, seen.motion};
+    window.owner = taa::layerOf(seen.surface, seen.depth, seen.expected, seen.motion, seen.slope);
     window.normal = int(seen.normal);
     window.moved = seen.moved;
-    const ptrdiff_t at = farthestInWindow(frame, x, y);
-    const int far_depth = logDepth16(frame.now.depth[at]);
-    const int far_step =
-        std::clamp(frame.now.depth_before[at] - far_depth, -taa::kMaxStep, taa::kMaxStep);
-    window.far = {frame.now.id[at] & int(kSurfaceMask), far_depth, taa::heldStep(far_step),
-                  taa::kDepthTolerance, frame.now.motion[at]};
+    const ptrdiff_t at = taa::farthestInWindow(frame, x, y);
+    window.far = taa::layerOf(frame.now.id[at] & kSurfaceMask, logDepth16(frame.now.depth[at]),
+                              frame.now.depth_before[at], frame.now.motion[at], 0);
     window.layered = window.owner.depth - window.far.depth >
                      taa::kDepthTolerance + 2 * taa::kSlopeFactor * seen.slope;
     window.frames = std::min(framesOf(frame, x, y, seen, window.layered), job.frames);
-    window.slide = slideOf(seen.motion, window.far.motion);
+    window.slide = taa::slideOf(seen.motion, window.far.motion);
     window.apart = window.layered && seen.motion.x_fx8 != kNoHistory &&
                    window.far.motion.x_fx8 != kNoHistory && window.slide > taa::kApart;
     window.own_way = wayOf(job, x, y, window.owner, window.frames);
@@ -207,13 +145,13 @@ Window lookAround(const Job& job, int x, int y) {
     return window;
 }
 
-bool litAsNow(const Job& job, const Window& window, int k, Place place, const SlotIn& slot,
+bool litAsNow(const Job& job, const Window& window, int k, TapLayer place, const SlotIn& slot,
               ptrdiff_t at) {
     const int surface = slot.id[at] & int(kSurfaceMask);
     if (job.frame.change_age != nullptr && uint32_t(k) > job.frame.change_age[surface]) {
         return false;
     }
-    if (!window.moved || place != Place::same || window.normal == 0) {
+    if (!window.moved || place != TapLayer::same || window.normal == 0) {
         return true;
     }
     const taa::SmallNormal then = taa::decodeNormal(uint16_t(slot.normal[at]));
@@ -222,20 +160,20 @@ bool litAsNow(const Job& job, const Window& window, int k, Place place, const Sl
 }
 
 /// Whether an old sample on the owner's way counts: the rules of the gather.
-bool counts(const Job& job, const Window& window, int k, Place place, const SlotIn& slot,
+bool counts(const Job& job, const Window& window, int k, TapLayer place, const SlotIn& slot,
             ptrdiff_t at, Motion motion) {
     const int surface = slot.id[at] & int(kSurfaceMask);
     const bool moved = (slot.id[at] & int(kMovedBit)) != 0;
-    if (place == Place::farther && !window.moved && moved &&
+    if (place == TapLayer::farther && !window.moved && moved &&
         !(window.layered && surface == window.far.surface)) {
         return false;  // it only went by
     }
-    const bool plain = place == Place::same || (place == Place::farther && window.layered);
+    const bool plain = place == TapLayer::same || (place == TapLayer::farther && window.layered);
     if (!plain || (window.moved && moved)) {
         const Motion other{slot.motion[0][at], slot.motion[1][at]};
         const uint32_t* started = job.frame.start_age;
         if ((started != nullptr && uint32_t(k) > started[surface]) || other.x_fx8 == kNoHistory ||
-            slideOf(other, motion) * k > taa::kMaxSlide) {
+            taa::slideOf(other, motion) * k > taa::kMaxSlide) {
             return false;
         }
     }
@@ -329,9 +267,9 @@ bool farColour(const Job& job, const Window& window, Offset offset, int rgb[3]) 
                  [&](int k, const SlotIn& slot, ptrdiff_t at, Motion, int weight, int ex, int ey) {
                      const int surface = slot.id[at] & int(kSurfaceMask);
                      const int depth = plusOffset(slot.depth[at]);
-                     if (placeOf(window.owner, k, surface, depth) == Place::farther &&
-                         placeOf(window.far, k, surface, depth) != Place::nearer &&
-                         litAsNow(job, window, k, Place::farther, slot, at)) {
+                     if (taa::placeOf(window.owner, k, surface, depth) == TapLayer::farther &&
+                         taa::placeOf(window.far, k, surface, depth) != TapLayer::nearer &&
+                         litAsNow(job, window, k, TapLayer::farther, slot, at)) {
                          taps.add(slot, at, weight, ex, ey, true);
                      }
                  });
@@ -347,14 +285,14 @@ void gatherPixel(const Job& job, const Window& window, int x, int y, Offset offs
         [&](int k, const SlotIn& slot, ptrdiff_t at, Motion motion, int weight, int ex, int ey) {
             const int surface = slot.id[at] & int(kSurfaceMask);
             const int depth = plusOffset(slot.depth[at]);
-            const Place place = placeOf(window.owner, k, surface, depth);
+            const TapLayer place = taa::placeOf(window.owner, k, surface, depth);
             if (k > 0 && !counts(job, window, k, place, slot, at, motion)) {
                 return;
             }
             const int above = depth - window.far.depthAt(k);
             const bool left = window.slide * k > taa::kMaxLag &&
                               above * 4 < window.owner.depthAt(k) - window.far.depthAt(k);
-            taps.add(slot, at, weight, ex, ey, place == Place::farther && left);
+            taps.add(slot, at, weight, ex, ey, place == TapLayer::farther && left);
         });
     const ptrdiff_t at = y * job.stride + x;
     if (!fit(taps, separate ? behind : nullptr, rgb)) {

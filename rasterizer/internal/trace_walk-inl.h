@@ -20,8 +20,8 @@ inline uint32_t withoutHoles(const SceneTree& scene, uint32_t instance, const Tr
     return mask;
 }
 
-/// A ray on its way to whatever is in it, one node or leaf a step.
-struct OcclusionWalk {
+/// A ray on its way through the trees, one node or leaf a step.
+struct Walk {
     TraceRay shape;
     const Ray* world = nullptr;
     const BvhNode* nodes = nullptr;  ///< of the mesh it is in, or of the scene
@@ -63,7 +63,7 @@ struct OcclusionWalk {
 
 enum class Step { goes_on, blocked, free };
 
-inline Step stepOf(const SceneTree& scene, OcclusionWalk& walk) {
+inline Step stepOf(const SceneTree& scene, Walk& walk) {
     if (walk.size == walk.floor) {
         if (walk.instance == kNothingHit) {
             return Step::free;
@@ -92,7 +92,7 @@ inline Step stepOf(const SceneTree& scene, OcclusionWalk& walk) {
 
 /// Of one ray and the triangles of one instance.
 inline bool instanceOccludes(const SceneTree& scene, uint32_t instance, const Ray& ray) {
-    OcclusionWalk walk;
+    Walk walk;
     walk.start(scene, ray);
     walk.size = 0;
     walk.enter(scene, instance);
@@ -103,51 +103,22 @@ inline bool instanceOccludes(const SceneTree& scene, uint32_t instance, const Ra
     return step == Step::blocked;
 }
 
-/// The same for the closest hit. Children wait with where the ray enters them; the nearest of a
+/// On its way to the closest hit. Children wait with where the ray enters them; the nearest of a
 /// node's comes first, the others as they lie.
-struct ClosestWalk {
-    TraceRay shape;
-    const Ray* world = nullptr;
-    const BvhNode* nodes = nullptr;
-    const TriangleBlock* blocks = nullptr;
-    uint32_t instance = kNothingHit;
-    int size = 0, floor = 0;
+struct ClosestWalk : Walk {
     float end = 0.0f;  ///< of what is still looked at
     RayHit best;
-    uint32_t stack[kTraceStack];
     float near_t[kTraceStack];
 
     void start(const SceneTree& scene, const Ray& ray) {
-        shape = TraceRay(ray.origin, ray.direction);
-        world = &ray;
-        nodes = scene.nodes.data();
-        instance = kNothingHit;
-        floor = 0;
+        Walk::start(scene, ray);
         end = ray.end;
         best = {};
-        stack[0] = 0;
         near_t[0] = 0.0f;
-        size = scene.nodes.empty() ? 0 : 1;
     }
     void enter(const SceneTree& scene, uint32_t which) {
-        const InstanceTree& i = scene.instances[which];
-        if (!i.identity) {
-            shape = toObject(i, *world);
-        }
-        instance = which;
-        nodes = i.tree->nodes.data();
-        blocks = i.tree->blocks.data();
-        floor = size;
         near_t[size] = 0.0f;
-        stack[size++] = 0;
-    }
-    void leave(const SceneTree& scene) {
-        if (!scene.instances[instance].identity) {
-            shape = TraceRay(world->origin, world->direction);
-        }
-        instance = kNothingHit;
-        nodes = scene.nodes.data();
-        floor = 0;
+        Walk::enter(scene, which);
     }
     void take(const TriangleBlock& block, const BlockHits& hits, uint32_t mask) {
         for (; mask != 0; mask &= mask - 1) {
@@ -204,8 +175,8 @@ inline bool stepOf(const SceneTree& scene, ClosestWalk& walk) {
 /// Rays take turns: while one waits for a node's memory and arithmetic, the others go on.
 inline void occludedRays(const SceneTree& scene, const Ray* rays, int count, uint8_t* blocked) {
     constexpr int kTogether = 8;
-    OcclusionWalk walks[kTogether];
-    OcclusionWalk* active[kTogether];
+    Walk walks[kTogether];
+    Walk* active[kTogether];
     int going = std::min(count, kTogether), next = going;
     for (int i = 0; i < going; ++i) {
         walks[i].start(scene, rays[i]);
@@ -213,7 +184,7 @@ inline void occludedRays(const SceneTree& scene, const Ray* rays, int count, uin
     }
     while (going > 0) {
         for (int i = 0; i < going; ++i) {
-            OcclusionWalk& walk = *active[i];
+            Walk& walk = *active[i];
             const Step step = stepOf(scene, walk);
             if (step == Step::goes_on) {
                 continue;
