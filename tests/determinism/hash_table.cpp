@@ -50,6 +50,19 @@ FrameRecord hashOf(const FrameResult& frame) {
     return record;
 }
 
+uint64_t digest(const SceneRecord& record) {
+    std::string text;  // digits, whose order does not depend on the CPU's
+    for (const FrameRecord& frame : record.frames) {
+        for (const StageHash& stage : frame) {
+            text += hex(stage.whole);
+            for (uint32_t tile : stage.tiles) {
+                text += hex(tile);
+            }
+        }
+    }
+    return hashBytes(text);
+}
+
 std::string differenceLine(const FrameRecord& expected, const FrameRecord& found, int tiles_x) {
     const auto difference = firstDifference(expected, found);
     if (!difference) {

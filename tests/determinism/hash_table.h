@@ -22,6 +22,9 @@ using Table = std::vector<SceneRecord>;
 /// Of a frame that has all planes.
 FrameRecord hashOf(const FrameResult& frame);
 
+/// One hash over all stages of all frames.
+uint64_t digest(const SceneRecord& record);
+
 /// One line that names stage and tile of the first difference; empty when there is none.
 std::string differenceLine(const FrameRecord& expected, const FrameRecord& found, int tiles_x);
 

@@ -1,13 +1,20 @@
-// determinism [--update] [--few] [--table FILE]
+// determinism [--update] [--few] [--report] [--table FILE]
 // Renders the built-in scenes with every SIMD target, scheduler and thread count and compares the
 // hashes of all stages with the committed table. Exit code: 0 equal, 1 some pixels differ, 2 the
 // table or a scene cannot be had.
+// --report prints a line per scene and SIMD target for programs: SCENE TARGET HASH TIME, tabs in
+// between; HASH is over all stages and frames, that of the first run that differs from the table if
+// there is one; TIME is the processor time of the target's first run in milliseconds. The lines of
+// the target "table" hold what is expected.
 
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <string>
+#include <vector>
 
 #include "demos/scenes/builtin.h"
+#include "engine/hash.h"
 #include "tests/determinism/hash_table.h"
 
 namespace still::determinism {
@@ -115,8 +122,39 @@ bool differs(const Case& c, const SceneRecord& expected, const SceneRecord& foun
     return false;
 }
 
+/// What --report says of one scene and SIMD target.
+struct ReportLine {
+    SimdTarget simd = SimdTarget::scalar;
+    uint64_t hash = 0;
+    double time_ms = 0;
+    bool equal = true;
+};
+
+/// Takes the run into its target's line: the first one counts, or the first that differs.
+void note(std::vector<ReportLine>& report, const ReportLine& run) {
+    for (ReportLine& line : report) {
+        if (line.simd == run.simd) {
+            if (line.equal && !run.equal) {
+                line.hash = run.hash;
+                line.equal = false;
+            }
+            return;
+        }
+    }
+    report.push_back(run);
+}
+
+void print(const Case& c, const SceneRecord& expected, const std::vector<ReportLine>& report) {
+    std::printf("%s\ttable\t%s\t0\n", c.name().c_str(), hex(digest(expected)).c_str());
+    for (const ReportLine& line : report) {
+        std::printf("%s\t%s\t%s\t%.1f\n", c.name().c_str(), std::string(name(line.simd)).c_str(),
+                    hex(line.hash).c_str(), line.time_ms);
+    }
+    std::fflush(stdout);
+}
+
 struct Options {
-    bool update = false, few = false;
+    bool update = false, few = false, report = false;
     std::string table = STILL_SOURCE_DIR "/tests/determinism/hashes.txt";
 };
 
@@ -162,13 +200,22 @@ int check(const Options& options) {
                          c.name().c_str(), c.frames);
             return 2;
         }
+        std::vector<ReportLine> report;
         for (const Configuration& configuration : configurations(options.few)) {
+            const std::clock_t start = std::clock();
             const SceneRecord found = render(c, *scene, configuration);
-            failures += differs(c, *expected, found, configuration) ? 1 : 0;
+            const double time_ms = double(std::clock() - start) * 1000 / CLOCKS_PER_SEC;
+            const bool equal = !differs(c, *expected, found, configuration);
+            note(report, {configuration.simd, digest(found), time_ms, equal});
+            failures += equal ? 0 : 1;
             ++runs;
         }
+        if (options.report) {
+            print(c, *expected, report);
+        }
     }
-    std::printf("%d of %d runs equal the table\n", runs - failures, runs);
+    std::fprintf(options.report ? stderr : stdout, "%d of %d runs equal the table\n",
+                 runs - failures, runs);
     return failures == 0 ? 0 : 1;
 }
 
@@ -182,10 +229,13 @@ int main(int argc, char** argv) {
             options.update = true;
         } else if (std::strcmp(argv[k], "--few") == 0) {
             options.few = true;
+        } else if (std::strcmp(argv[k], "--report") == 0) {
+            options.report = true;
         } else if (std::strcmp(argv[k], "--table") == 0 && k + 1 < argc) {
             options.table = argv[++k];
         } else {
-            std::fprintf(stderr, "usage: determinism [--update] [--few] [--table FILE]\n");
+            std::fprintf(stderr,
+                         "usage: determinism [--update] [--few] [--report] [--table FILE]\n");
             return 2;
         }
     }
