@@ -99,6 +99,8 @@ FrameLoop::FrameLoop(const Scene& scene, const FrameSettings& settings, Workers&
 }
 
 FrameLoop::~FrameLoop() = default;
+FrameLoop::FrameLoop(FrameLoop&&) noexcept = default;
+FrameLoop& FrameLoop::operator=(FrameLoop&&) noexcept = default;
 
 FrameResult FrameLoop::render(int frame) {
     assert(frame >= 0);

@@ -95,11 +95,12 @@ struct FrameResult {
 
 class FrameLoop {
   public:
-    /// `scene` and `workers` must outlive the loop.
+    /// `scene` and `workers` must outlive the loop. Loops on different threads may share both; a
+    /// loop itself is used by one thread at a time. A result outlives its loop's being moved.
     FrameLoop(const Scene& scene, const FrameSettings& settings, Workers& workers);
     ~FrameLoop();
-    FrameLoop(const FrameLoop&) = delete;
-    FrameLoop& operator=(const FrameLoop&) = delete;
+    FrameLoop(FrameLoop&&) noexcept;
+    FrameLoop& operator=(FrameLoop&&) noexcept;
 
     /// Renders frame `frame`. Frames that it depends on (back to the last cut or resize) are
     /// replayed unseen when they were not rendered just before, so any order gives the same bytes.
@@ -112,8 +113,8 @@ class FrameLoop {
 
     /// From the frame rendered next, R, on, frames are smaller than the picture by this ratio
     /// (kNativeRatio_fx8 … kMaxRatio_fx8). That is no cut: the picture goes on. Frames before R
-    /// keep the ratios they had, also when they are rendered again. Only with a policy that
-    /// upscales in time, upscalesInTime().
+    /// keep the ratios they had, also when they are rendered again; for that, eight bytes are kept
+    /// for each change. Only with a policy that upscales in time, upscalesInTime().
     void setRatio(int ratio_fx8);
 
     /// Of the sample that was rasterized last for the last frame; all zero when it needed none.

@@ -372,6 +372,8 @@ void Denoiser::State::filter(const Job& job, const denoising::Kernels& kernels, 
 
 Denoiser::Denoiser() : state_(std::make_unique<State>()) {}
 Denoiser::~Denoiser() = default;
+Denoiser::Denoiser(Denoiser&&) noexcept = default;
+Denoiser& Denoiser::operator=(Denoiser&&) noexcept = default;
 
 void Denoiser::run(const GBuffer& gbuffer, const LightPlanes& noisy, const DenoiseFrame& frame,
                    SimdTarget simd, Workers& workers) {

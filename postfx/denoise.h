@@ -43,8 +43,8 @@ class Denoiser {
   public:
     Denoiser();
     ~Denoiser();
-    Denoiser(const Denoiser&) = delete;
-    Denoiser& operator=(const Denoiser&) = delete;
+    Denoiser(Denoiser&&) noexcept;
+    Denoiser& operator=(Denoiser&&) noexcept;
 
     /// `gbuffer` has the planes normal and motion; its colours are not read, and of its albedo only
     /// where there is none. A changed size is a reset.

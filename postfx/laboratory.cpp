@@ -156,6 +156,8 @@ struct Laboratory::State {
 
 Laboratory::Laboratory() : state_(std::make_unique<State>()) {}
 Laboratory::~Laboratory() = default;
+Laboratory::Laboratory(Laboratory&&) noexcept = default;
+Laboratory& Laboratory::operator=(Laboratory&&) noexcept = default;
 
 void Laboratory::resolve(const GBuffer& gbuffer, const LaboratoryFrame& frame,
                          const TaaPolicy& policy, SimdTarget simd, Workers& workers) {

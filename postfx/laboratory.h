@@ -28,8 +28,8 @@ class Laboratory {
   public:
     Laboratory();
     ~Laboratory();
-    Laboratory(const Laboratory&) = delete;
-    Laboratory& operator=(const Laboratory&) = delete;
+    Laboratory(Laboratory&&) noexcept;
+    Laboratory& operator=(Laboratory&&) noexcept;
 
     /// `policy.method` is recursive. Needs the planes motion and, for tests of normals, normal. A
     /// changed size or policy resets by itself.

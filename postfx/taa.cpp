@@ -207,6 +207,8 @@ void Taa::State::showFirst(const GBuffer& gbuffer, const TaaFrame& frame, SimdTa
 
 Taa::Taa() : state_(std::make_unique<State>()) {}
 Taa::~Taa() = default;
+Taa::Taa(Taa&&) noexcept = default;
+Taa& Taa::operator=(Taa&&) noexcept = default;
 
 bool Taa::rest(const TaaSettings& settings) {
     State& s = *state_;

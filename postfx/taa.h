@@ -56,8 +56,8 @@ class Taa {
   public:
     Taa();
     ~Taa();
-    Taa(const Taa&) = delete;
-    Taa& operator=(const Taa&) = delete;
+    Taa(Taa&&) noexcept;
+    Taa& operator=(Taa&&) noexcept;
 
     /// Which tiles (1; else 0) of a G-buffer of this size and these facts the frame's resolve()
     /// reads. In the others the planes may keep samples of the frame in which they were last read.

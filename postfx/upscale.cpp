@@ -81,6 +81,8 @@ void TemporalUpscaler::State::showFirst(const GBuffer& gbuffer, const TaaFrame& 
 
 TemporalUpscaler::TemporalUpscaler() : state_(std::make_unique<State>()) {}
 TemporalUpscaler::~TemporalUpscaler() = default;
+TemporalUpscaler::TemporalUpscaler(TemporalUpscaler&&) noexcept = default;
+TemporalUpscaler& TemporalUpscaler::operator=(TemporalUpscaler&&) noexcept = default;
 
 bool TemporalUpscaler::rest(int frame_width, int frame_height, const UpscaleSettings& settings) {
     State& s = *state_;

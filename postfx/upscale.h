@@ -36,8 +36,8 @@ class TemporalUpscaler {
   public:
     TemporalUpscaler();
     ~TemporalUpscaler();
-    TemporalUpscaler(const TemporalUpscaler&) = delete;
-    TemporalUpscaler& operator=(const TemporalUpscaler&) = delete;
+    TemporalUpscaler(TemporalUpscaler&&) noexcept;
+    TemporalUpscaler& operator=(TemporalUpscaler&&) noexcept;
 
     /// Taa::plan() of a frame of this size.
     std::span<const uint8_t> plan(int frame_width, int frame_height,

@@ -112,6 +112,8 @@ struct LightSampler::State {
 
 LightSampler::LightSampler() : state_(std::make_unique<State>()) {}
 LightSampler::~LightSampler() = default;
+LightSampler::LightSampler(LightSampler&&) noexcept = default;
+LightSampler& LightSampler::operator=(LightSampler&&) noexcept = default;
 
 void LightSampler::setUp(const DrawList& list, const FrameView& view, SimdTarget simd,
                          Workers& workers) {

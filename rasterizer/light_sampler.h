@@ -48,8 +48,8 @@ class LightSampler {
   public:
     LightSampler();
     ~LightSampler();
-    LightSampler(const LightSampler&) = delete;
-    LightSampler& operator=(const LightSampler&) = delete;
+    LightSampler(LightSampler&&) noexcept;
+    LightSampler& operator=(LightSampler&&) noexcept;
 
     /// Builds what does not exist yet, and the tree of instances if one of them moved. Only what
     /// is traced is built. `list` and `view` must stay valid until sample() has returned.

@@ -105,6 +105,8 @@ struct Rasterizer::State {
 
 Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
 Rasterizer::~Rasterizer() = default;
+Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
+Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
 
 std::span<const TileFacts> Rasterizer::setUp(const DrawList& list, const FrameView& view,
                                              const RasterSettings& settings) {

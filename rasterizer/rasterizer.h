@@ -83,13 +83,14 @@ struct SurfaceWork {
     int kernel = 0;  ///< 0 = plain colours, 1 = textures, 2 = all but height maps, 3 = all
 };
 
-/// Keeps its buffers from frame to frame. Not copyable, one frame at a time.
+/// Keeps its buffers from frame to frame. Not copyable, one frame at a time. What was moved from
+/// may only be destroyed or assigned to; so with all classes here and in the layers above.
 class Rasterizer {
   public:
     Rasterizer();
     ~Rasterizer();
-    Rasterizer(const Rasterizer&) = delete;
-    Rasterizer& operator=(const Rasterizer&) = delete;
+    Rasterizer(Rasterizer&&) noexcept;
+    Rasterizer& operator=(Rasterizer&&) noexcept;
 
     /// The facts of the view's tiles, before anything is drawn. Preconditions as below.
     /// transformAndBin(workers) goes on from here.

@@ -50,6 +50,7 @@ struct Workers::State {
     uint64_t random = 0;
     WorkObserver* observer = nullptr;
 
+    std::mutex turn;  ///< held by the thread whose parallelFor runs
     std::mutex mutex;
     std::condition_variable start, done;
     uint64_t generation = 0;
@@ -147,6 +148,7 @@ void Workers::run(int count, int grain, Call call, void* body) {
     if (job.observer != nullptr) {
         job.observer->sectionBegins(job.grains());
     }
+    const std::lock_guard turn(state_->turn);
     if (state_->schedule == Schedule::shuffled) {
         state_->runShuffled(job);
     } else if (state_->threads == 1 || job.grains() <= 1) {

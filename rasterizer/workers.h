@@ -26,6 +26,7 @@ class WorkObserver {
     ~WorkObserver() = default;
 };
 
+/// Its place must not change: whoever uses it keeps a reference.
 class Workers {
   public:
     /// threads ≥ 1 counts the calling thread; serial and shuffled use one thread only.
@@ -40,6 +41,7 @@ class Workers {
     /// Calls task(begin, end, worker) for every grain [begin, end) of [0, count), each exactly
     /// once, and returns when all are done. `worker` only selects scratch memory; a result must not
     /// depend on it. Tasks must not throw and must not call parallelFor. Order is unspecified.
+    /// Calls from several threads take turns.
     template <class Task>
     void parallelFor(int count, int grain, Task&& task) {
         using Body = std::remove_reference_t<Task>;
@@ -51,7 +53,7 @@ class Workers {
             const_cast<void*>(static_cast<const void*>(&task)));
     }
 
-    /// From now on, until it is null. Not from within a task.
+    /// From now on, until it is null. Not while a parallelFor runs.
     void observe(WorkObserver* observer);
 
   private:

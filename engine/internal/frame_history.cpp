@@ -134,10 +134,11 @@ void FrameLoop::State::resolveFrame(int frame, bool looked_at) {
 /// Brings the history to `frame`, from its start when it does not end right before.
 void FrameLoop::State::resolveHistory(int frame) {
     const int first = resolved_frame == frame - 1 ? frame : historyStart(frame);
-    for (int replayed = first; replayed <= frame; ++replayed) {
-        times = {};
-        resolveFrame(replayed, replayed == frame);
+    for (int replayed = first; replayed < frame; ++replayed) {
+        resolveFrame(replayed, false);
     }
+    times = {};
+    resolveFrame(frame, true);
     if (settings.anti_aliasing == AntiAliasing::fxaa) {
         filterSample();
     }

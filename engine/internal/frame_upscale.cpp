@@ -37,7 +37,9 @@ void FrameLoop::State::noteRatio(int frame) {
     if (ratio_changes.empty()) {
         ratio_changes.push_back({-1, settings.policy.ratio_fx8});
     }
-    std::erase_if(ratio_changes, [&](const RatioChange& c) { return c.first_frame >= frame; });
+    while (ratio_changes.back().first_frame >= frame) {
+        ratio_changes.pop_back();
+    }
     if (ratio_changes.back().ratio_fx8 != next_ratio_fx8) {
         ratio_changes.push_back({frame, next_ratio_fx8});
     }
@@ -45,11 +47,11 @@ void FrameLoop::State::noteRatio(int frame) {
 }
 
 int FrameLoop::State::ratioAt(int frame) const {
-    int ratio_fx8 = settings.policy.ratio_fx8;
-    for (const RatioChange& change : ratio_changes) {
-        ratio_fx8 = change.first_frame <= frame ? change.ratio_fx8 : ratio_fx8;
-    }
-    return ratio_fx8;
+    // Sessions grow long, and some change their ratio often.
+    const auto after = std::upper_bound(
+        ratio_changes.begin(), ratio_changes.end(), frame,
+        [](int wanted, const RatioChange& change) { return wanted < change.first_frame; });
+    return after == ratio_changes.begin() ? settings.policy.ratio_fx8 : (after - 1)->ratio_fx8;
 }
 
 /// The ring is the same at all ratios, so that the history stays when the ratio changes.
