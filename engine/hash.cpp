@@ -3,10 +3,32 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <iterator>
+#include <type_traits>
+#include <vector>
 
 namespace still {
 namespace {
+
+// Hashes are of numbers as little-endian machines keep them.
+constexpr bool kAsKept = std::endian::native == std::endian::little;
+
+template <class T>
+T littleEndian(T value) {
+    if constexpr (kAsKept || std::is_same_v<T, Rgb8>) {
+        return value;
+    } else if constexpr (std::is_same_v<T, Motion>) {
+        return {littleEndian(value.x_fx8), littleEndian(value.y_fx8)};
+    } else {
+        static_assert(std::is_integral_v<T>);
+        auto bytes = std::bit_cast<std::array<uint8_t, sizeof(T)>>(value);
+        std::reverse(bytes.begin(), bytes.end());
+        return std::bit_cast<T>(bytes);
+    }
+}
 
 /// Feeds sizes and rows; never the padding between rows.
 class PlaneHasher {
@@ -17,14 +39,25 @@ class PlaneHasher {
     void add(ImageView<const T> plane) {
         static_assert(std::has_unique_object_representations_v<T>, "padding would be hashed");
         const std::array<int32_t, 2> size{plane.width, plane.height};
-        XXH3_64bits_update(&state_, size.data(), sizeof(size));
+        addRow(size.data(), size.size());
         for (int y = 0; y < plane.height; ++y) {
-            XXH3_64bits_update(&state_, plane.row(y), size_t(plane.width) * sizeof(T));
+            addRow(plane.row(y), size_t(plane.width));
         }
     }
     uint64_t digest() const { return XXH3_64bits_digest(&state_); }
 
   private:
+    template <class T>
+    void addRow(const T* row, size_t count) {
+        std::vector<T> swapped;
+        if constexpr (!kAsKept) {
+            std::transform(row, row + count, std::back_inserter(swapped),
+                           [](T value) { return littleEndian(value); });
+            row = swapped.data();
+        }
+        XXH3_64bits_update(&state_, row, count * sizeof(T));
+    }
+
     XXH3_state_t state_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-// 64-bit content hashes (XXH3, libxxhash) of images and planes: size and pixels, not the padding.
+// 64-bit content hashes (XXH3, libxxhash) of images and planes: size and pixels as
+// little-endian numbers, on every machine; not the padding.
 
 #include <cstdint>
 #include <string>

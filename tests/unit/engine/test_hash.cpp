@@ -50,6 +50,21 @@ TEST_CASE("hash: the value is the same on every machine", "[unit][hash]") {
     CHECK(hex(hashOf(counting(5, 3))) == "33e6beac30a348c1");
 }
 
+TEST_CASE("hash: numbers are hashed with their low byte first", "[unit][hash]") {
+    const auto bytes = [](std::initializer_list<int> list) {
+        return std::string(list.begin(), list.end());
+    };
+    const std::string size = bytes({1, 0, 0, 0, 1, 0, 0, 0});
+    const uint16_t colour[] = {0x0201};
+    const uint32_t depth[] = {0x04030201};
+    const Motion motion[] = {{0x0201, 0x0403}};
+    CHECK(hashPlane(ImageView<const uint16_t>{colour, 1, 1, 1}) == hashBytes(size + bytes({1, 2})));
+    CHECK(hashPlane(ImageView<const uint32_t>{depth, 1, 1, 1}) ==
+          hashBytes(size + bytes({1, 2, 3, 4})));
+    CHECK(hashPlane(ImageView<const Motion>{motion, 1, 1, 1}) ==
+          hashBytes(size + bytes({1, 2, 3, 4})));
+}
+
 TEST_CASE("hash: hexadecimal has 16 digits", "[unit][hash]") {
     CHECK(hex(0) == "0000000000000000");
     CHECK(hex(0x0123456789ABCDEF) == "0123456789abcdef");
