@@ -7,7 +7,7 @@ namespace HWY_NAMESPACE {
 
 /// decodeOctahedral(), one axis.
 HWY_INLINE VF octahedralAxis(VI half) {
-    return hn::Div(hn::ConvertTo(DF(), half), set(32767.0f));
+    return div(hn::ConvertTo(DF(), half), set(32767.0f));
 }
 
 /// v, with the sign of `of`; 0 counts as positive.
@@ -45,7 +45,7 @@ HWY_INLINE void guidesGroup(const Job& job, int x, int y) {
     const VF ny = hn::IfThenElse(folded, signedLike(hn::Sub(one, hn::Abs(u)), v), v);
     const VF square = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
     const MF background = hn::RebindMask(d, hn::Eq(surface, setInt(0)));
-    const VF scale = hn::IfThenZeroElse(background, hn::Div(one, hn::Sqrt(square)));
+    const VF scale = hn::IfThenZeroElse(background, div(one, squareRoot(square)));
     store(hn::Mul(nx, scale), job.now.normal[0] + at);
     store(hn::Mul(ny, scale), job.now.normal[1] + at);
     store(hn::Mul(nz, scale), job.now.normal[2] + at);
@@ -117,7 +117,7 @@ HWY_INLINE WantedLanes wantedLanes(const Job& job, ptrdiff_t at) {
     w.depth = loadInt(job.depth_before + at);
     const VF step = hn::Max(hn::Abs(load(job.step[0] + at)), hn::Abs(load(job.step[1] + at)));
     // pastTolerance()
-    const VF steep = hn::Div(step, hn::Add(loadDepth(job.depth + at), set(1e-12f)));
+    const VF steep = div(step, hn::Add(loadDepth(job.depth + at), set(1e-12f)));
     const VF slope = hn::Mul(hn::Min(steep, set(1.0f)), set(kSlopeFactor));
     const VI tolerance = hn::Add(setInt(kDepthTolerance), hn::ConvertTo(DI(), slope));
     const auto rests =
@@ -219,7 +219,7 @@ HWY_INLINE MF findLanes(const Job& job, int x, int y, MF pixels, FoundLanes& f, 
     const auto whole = hn::Eq(hn::Or(fx, fy), setInt(0));
     exact = hn::And(hn::RebindMask(d, whole), hn::Eq(f.weight, set(65536.0f)));
     f.scale(hn::IfThenElseZero(hn::Gt(f.weight, hn::Zero(d)),
-                               hn::Div(set(1.0f), hn::Max(f.weight, set(1.0f)))));
+                               div(set(1.0f), hn::Max(f.weight, set(1.0f)))));
     return hn::And(sought, hn::Lt(f.weight, set(float(kEnoughPast))));
 }
 
@@ -272,7 +272,7 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
     const MF young = hn::Eq(still, set(float(kYoungFrames)));
     VF light_age = most;
     for (int p = 0; p < kParts; ++p) {
-        const VF even = hn::Div(one, hn::Add(hn::Min(found.count[p], longest), one));
+        const VF even = div(one, hn::Add(hn::Min(found.count[p], longest), one));
         const VF grown = hn::Add(even, hn::Mul(hn::Sub(one, even), change.unsure[p]));
         const VF share = hn::IfThenElse(has_past, grown, one);
         VF sample[3];
@@ -289,12 +289,12 @@ HWY_INLINE void blendGroup(const Job& job, int x, int y, int count) {
         const VF square =
             hn::Add(past_square, hn::Mul(hn::Sub(hn::Mul(bright, bright), past_square), share));
         store(hn::IfThenElseZero(surface, square), job.now.square[p] + at);
-        storeByte(hn::IfThenElseZero(surface, hn::Div(one, share)), job.now.count[p] + at);
+        storeByte(hn::IfThenElseZero(surface, div(one, share)), job.now.count[p] + at);
         const VF drift = hn::Max(hn::Abs(hn::Sub(change.ratio[p], one)),
                                  hn::Mul(change.unsure[p], set(kDriftPart)));
         const VF bound = hn::IfThenElse(
             hn::Gt(drift, zero),
-            hn::Min(set(255.0f), hn::Div(set(kAgeDrift), hn::Max(drift, set(1e-9f)))), set(255.0f));
+            hn::Min(set(255.0f), div(set(kAgeDrift), hn::Max(drift, set(1e-9f)))), set(255.0f));
         const MF grown_up = hn::And(young, hn::Le(found.count[p], set(float(kYoungFrames))));
         const VF oldest = hn::IfThenElse(grown_up, set(float(kYoungKept)), set(255.0f));
         const VF older = hn::Min(hn::Add(found.age[p], one), oldest);
@@ -356,10 +356,10 @@ HWY_NOINLINE VF variedAroundLanes(const Job& job, int part, int x, int y) {
             squares = hn::Add(squares, hn::IfThenElseZero(in, load(job.now.square[part] + from)));
         }
     }
-    const VF mean = hn::Div(sum, total);
+    const VF mean = div(sum, total);
     const VF off = hn::Sub(pastLuminanceLanes(job, part, at), mean);
     return hn::Max(hn::Mul(set(kOutlier), hn::Mul(off, off)),
-                   hn::Sub(hn::Div(squares, total), hn::Mul(mean, mean)));
+                   hn::Sub(div(squares, total), hn::Mul(mean, mean)));
 }
 
 HWY_ATTR void varianceTile(const Job& job, const TileRect& tile) noexcept {
@@ -375,10 +375,10 @@ HWY_ATTR void varianceTile(const Job& job, const TileRect& tile) noexcept {
                 const VF mean = pastLuminanceLanes(job, p, at);
                 const VF own = hn::Max(hn::Zero(d),
                                        hn::Sub(load(job.now.square[p] + at), hn::Mul(mean, mean)));
-                VF variance = hn::Div(own, hn::Max(hn::Sub(count, set(1.0f)), set(1.0f)));
+                VF variance = div(own, hn::Max(hn::Sub(count, set(1.0f)), set(1.0f)));
                 const MF fresh = hn::Lt(count, set(float(kShort)));
                 if (any(fresh)) {
-                    const VF around = hn::Div(variedAroundLanes(job, p, x, y), count);
+                    const VF around = div(variedAroundLanes(job, p, x, y), count);
                     variance = hn::IfThenElse(fresh, around, variance);
                 }
                 store(hn::IfThenElseZero(surface, variance), job.first.variance[p] + at);

@@ -75,7 +75,7 @@ HWY_INLINE void filterGroup(const Job& job, const FilterPlanes& in, const Filter
     const VF step_y = hn::Mul(load(job.step[1] + at), reach);
     const VF slope = hn::Mul(hn::Add(hn::Abs(step_x), hn::Abs(step_y)), set(kSlopeReach));
     const VF span = hn::Add(hn::Mul(depth, set(kPlaneReach * float(stride))), slope);
-    const VF plane_scale = hn::Div(set(1.0f), hn::Add(span, set(1e-12f)));
+    const VF plane_scale = div(set(1.0f), hn::Add(span, set(1e-12f)));
     FilterLanes f;
     for (int p = 0; p < kParts; ++p) {
         if (!filters(parts, p)) {
@@ -85,8 +85,8 @@ HWY_INLINE void filterGroup(const Job& job, const FilterPlanes& in, const Filter
         const VF green = loadLight(in.light[3 * p + 1] + at);
         const VF blue = loadLight(in.light[3 * p + 2] + at);
         f.here[p] = luminanceLanes(red, green, blue);
-        const VF sigma = hn::Sqrt(smoothVarianceLanes(job, in.variance[p], x, y, kEdge));
-        f.scale[p] = hn::Div(set(1.0f), multiplyAdd(set(kLeastSpan), set(kSigmas[p]), sigma));
+        const VF sigma = squareRoot(smoothVarianceLanes(job, in.variance[p], x, y, kEdge));
+        f.scale[p] = div(set(1.0f), multiplyAdd(set(kLeastSpan), set(kSigmas[p]), sigma));
         f.total[p] = set(kCentre);
         f.square[p] = hn::Mul(set(kCentre * kCentre), load(in.variance[p] + at));
         f.sum[3 * p] = hn::Mul(set(kCentre), red);
@@ -120,7 +120,7 @@ HWY_INLINE void filterGroup(const Job& job, const FilterPlanes& in, const Filter
         if (!filters(parts, p)) {
             continue;
         }
-        const VF share = hn::Div(set(1.0f), f.total[p]);
+        const VF share = div(set(1.0f), f.total[p]);
         store(hn::Mul(f.square[p], hn::Mul(share, share)), out.variance[p] + at);
         for (int c = 3 * p; c < 3 * p + 3; ++c) {
             storeLight(hn::Mul(f.sum[c], share), out.light[c] + at);

@@ -5,6 +5,8 @@ HWY_BEFORE_NAMESPACE();
 namespace still::denoising {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using internal::HWY_NAMESPACE::div;
+using internal::HWY_NAMESPACE::squareRoot;
 
 constexpr int kMostLanes = 16;
 using DF = hn::CappedTag<float, kMostLanes>;

@@ -15,8 +15,10 @@
 
 // Highway's one-lane target is never asked for: the reference kernels stand in.
 #if HWY_TARGET != HWY_SCALAR
-#include "postfx/internal/denoise_lanes-inl.h"
+#include "rasterizer/internal/lanes-inl.h"
 // The others build on it.
+#include "postfx/internal/denoise_lanes-inl.h"
+// The others build on both.
 #include "postfx/internal/denoise_blend-inl.h"
 #include "postfx/internal/denoise_filter-inl.h"
 #endif

@@ -5,6 +5,8 @@ HWY_BEFORE_NAMESPACE();
 namespace still::enlarging {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using internal::HWY_NAMESPACE::div;
+using internal::HWY_NAMESPACE::squareRoot;
 
 using F = hn::CappedTag<float, 16>;
 using I = hn::RebindToSigned<F>;
@@ -57,7 +59,7 @@ HWY_ATTR void bicubicRow(const Row& row) {
 HWY_INLINE VF slopeOf(VF share, VF before, VF middle, VF after, VF& length) {
     const VF slope = hn::Sub(after, before);
     const VF steepest = hn::Max(hn::Abs(hn::Sub(after, middle)), hn::Abs(hn::Sub(middle, before)));
-    const VF ratio = hn::Min(hn::Div(hn::Abs(slope), hn::Max(steepest, set(kNoEdge))), set(1.0f));
+    const VF ratio = hn::Min(div(hn::Abs(slope), hn::Max(steepest, set(kNoEdge))), set(1.0f));
     length = hn::Add(length, hn::Mul(hn::Mul(ratio, ratio), share));
     return hn::Mul(slope, share);
 }
@@ -70,21 +72,20 @@ HWY_INLINE Shapes shapesOf(VF edge_x, VF edge_y, VF length) {
     const VF one = set(1.0f);
     const VF square = hn::Add(hn::Mul(edge_x, edge_x), hn::Mul(edge_y, edge_y));
     const auto none = hn::Lt(square, set(kNoEdge));
-    const VF size = hn::Sqrt(hn::Max(square, set(kNoEdge)));
-    const VF along_x = hn::IfThenElse(none, one, hn::Div(edge_x, size));
-    const VF along_y = hn::IfThenZeroElse(none, hn::Div(edge_y, size));
+    const VF size = squareRoot(hn::Max(square, set(kNoEdge)));
+    const VF along_x = hn::IfThenElse(none, one, div(edge_x, size));
+    const VF along_y = hn::IfThenZeroElse(none, div(edge_y, size));
     const VF half = hn::Mul(length, set(0.5f));
     const VF sharp = hn::Mul(half, half);
     const VF longer = hn::Max(hn::Abs(along_x), hn::Abs(along_y));
-    const VF diagonal =
-        hn::Div(hn::Add(hn::Mul(along_x, along_x), hn::Mul(along_y, along_y)), longer);
+    const VF diagonal = div(hn::Add(hn::Mul(along_x, along_x), hn::Mul(along_y, along_y)), longer);
     const VF lobe = hn::Sub(set(0.5f), hn::Mul(set(0.29f), sharp));
     return {along_x,
             along_y,
             hn::Add(one, hn::Mul(hn::Sub(diagonal, one), sharp)),
             hn::Sub(one, hn::Mul(set(0.5f), sharp)),
             lobe,
-            hn::Div(one, lobe)};
+            div(one, lobe)};
 }
 
 HWY_INLINE VF weightsAt(const Shapes& s, VF x, VF y) {
@@ -141,7 +142,7 @@ HWY_ATTR void edgeRow(const Row& row) {
                 least = middle ? hn::Min(least, root) : least;
                 most = middle ? hn::Max(most, root) : most;
             }
-            storeLight(hn::Min(hn::Max(hn::Div(sum, total), least), most), row.out[c] + x);
+            storeLight(hn::Min(hn::Max(div(sum, total), least), most), row.out[c] + x);
         }
     }
 }

@@ -14,6 +14,8 @@
 
 // Highway's one-lane target is never asked for: the reference kernels stand in.
 #if HWY_TARGET != HWY_SCALAR
+#include "rasterizer/internal/lanes-inl.h"
+// The other builds on it.
 #include "postfx/internal/spatial_upscale-inl.h"
 #endif
 

@@ -1,4 +1,5 @@
-// What kernels of several stages share. Included once per target by each file that compiles kernels.
+// What kernels of several stages share. Included once per target by each file that compiles
+// kernels.
 
 HWY_BEFORE_NAMESPACE();
 namespace still::internal {
@@ -11,8 +12,47 @@ hn::Vec<hn::RebindToSigned<D>> roundLanes(D d, V v) {
     return hn::ConvertTo(hn::RebindToSigned<D>(), hn::Floor(hn::Add(v, hn::Set(d, 0.5f))));
 }
 
+// Quotients and roots are rounded once, as IEEE wants it. 32-bit NEON has neither of both, and
+// Highway estimates them there: lane by lane the processor has them after all.
+#if HWY_ARCH_ARM_V7
+
+template <class V>
+HWY_INLINE V div(V a, V b) {
+    const hn::DFromV<V> d;
+    HWY_ALIGN float x[hn::MaxLanes(d)], y[hn::MaxLanes(d)];
+    hn::Store(a, d, x);
+    hn::Store(b, d, y);
+    for (size_t i = 0; i < hn::MaxLanes(d); ++i) {
+        x[i] /= y[i];
+    }
+    return hn::Load(d, x);
+}
+template <class V>
+HWY_INLINE V squareRoot(V v) {
+    const hn::DFromV<V> d;
+    HWY_ALIGN float x[hn::MaxLanes(d)];
+    hn::Store(v, d, x);
+    for (float& lane : x) {
+        lane = std::sqrt(lane);
+    }
+    return hn::Load(d, x);
+}
+
+#else
+
+template <class V>
+HWY_INLINE V div(V a, V b) {
+    return hn::Div(a, b);
+}
+template <class V>
+HWY_INLINE V squareRoot(V v) {
+    return hn::Sqrt(v);
+}
+
+#endif
+
 // Lanes of double, for what float cannot hold. Highway 1.0.3 has no arithmetic on them for
-// WebAssembly, although that has it: there they stand for themselves.
+// WebAssembly and 32-bit NEON, although the processors have it: there they stand for themselves.
 #if HWY_HAVE_FLOAT64
 
 template <class D>
@@ -43,10 +83,6 @@ HWY_INLINE V sub(V a, V b) {
 template <class V>
 HWY_INLINE V mul(V a, V b) {
     return hn::Mul(a, b);
-}
-template <class V>
-HWY_INLINE V div(V a, V b) {
-    return hn::Div(a, b);
 }
 
 #elif HWY_TARGET == HWY_WASM
@@ -84,6 +120,41 @@ HWY_INLINE WasmDoubles mul(WasmDoubles a, WasmDoubles b) {
 }
 HWY_INLINE WasmDoubles div(WasmDoubles a, WasmDoubles b) {
     return {wasm_f64x2_div(a.raw, b.raw)};
+}
+
+#elif HWY_ARCH_ARM_V7
+
+struct TwoDoubles {
+    double lane[2];
+};
+template <class D>
+using DoubleVec = TwoDoubles;
+
+template <class D>
+HWY_INLINE TwoDoubles doubles(D, double v) {
+    return {{v, v}};
+}
+/// From two lanes of int32_t or float.
+template <class D, class V>
+HWY_INLINE TwoDoubles toDoubles(D, V v) {
+    return {{double(hn::GetLane(v)), double(hn::ExtractLane(v, 1))}};
+}
+template <class DF>
+HWY_INLINE hn::Vec<DF> toFloats(DF d, TwoDoubles v) {
+    HWY_ALIGN const float lanes[2] = {float(v.lane[0]), float(v.lane[1])};
+    return hn::Load(d, lanes);
+}
+HWY_INLINE TwoDoubles add(TwoDoubles a, TwoDoubles b) {
+    return {{a.lane[0] + b.lane[0], a.lane[1] + b.lane[1]}};
+}
+HWY_INLINE TwoDoubles sub(TwoDoubles a, TwoDoubles b) {
+    return {{a.lane[0] - b.lane[0], a.lane[1] - b.lane[1]}};
+}
+HWY_INLINE TwoDoubles mul(TwoDoubles a, TwoDoubles b) {
+    return {{a.lane[0] * b.lane[0], a.lane[1] * b.lane[1]}};
+}
+HWY_INLINE TwoDoubles div(TwoDoubles a, TwoDoubles b) {
+    return {{a.lane[0] / b.lane[0], a.lane[1] / b.lane[1]}};
 }
 
 #endif

@@ -98,8 +98,8 @@ HWY_INLINE LaneLight lightSurface(const TileContext& tile, const LaneTriangles<k
                           hn::Sub(splat(light.position[1]), position.y),
                           hn::Sub(splat(light.position[2]), position.z)};
             const FVec d2 = hn::Max(dot3(to, to), splat(1e-12f));
-            const Vec3 direction = scale3(to, hn::Div(splat(1.0f), hn::Sqrt(d2)));
-            addLight(lit, direction, light.colour, hn::Div(splat(1.0f), d2), n, to_eye, shininess);
+            const Vec3 direction = scale3(to, div(splat(1.0f), squareRoot(d2)));
+            addLight(lit, direction, light.colour, div(splat(1.0f), d2), n, to_eye, shininess);
         }
     }
     return lit;

@@ -22,7 +22,7 @@ HWY_INLINE LaneRaySlope raySlope(const FrameTables& frame, const LaneTriangles<k
     const Vec3 bitangent = worldBitangent(t, instance, n, tangent);
     const Vec3 to_eye = towardsEye(*frame.view, worldPosition(t, p, instance));
     const FVec cosine = hn::Max(hn::Mul(dot3(n, to_eye), p.flip), splat(kParallaxMinCosine));
-    const FVec scale = hn::Neg(hn::Div(splat(s.material->height_scale), cosine));
+    const FVec scale = hn::Neg(div(splat(s.material->height_scale), cosine));
     return {hn::Mul(dot3(tangent, to_eye), scale), hn::Mul(dot3(bitangent, to_eye), scale)};
 }
 
@@ -42,7 +42,7 @@ HWY_NOINLINE LaneTexture displacedCoordinates(const FrameTables& frame,
         const FVec height = sampleAlphaAt(*s.height, mip, hn::Add(c.u, hn::Mul(slope.u, layer)),
                                           hn::Add(c.v, hn::Mul(slope.v, layer)));
         const FVec gap = hn::Sub(hn::Sub(splat(1.0f), height), layer);
-        const FVec back = hn::Div(gap, hn::Min(hn::Sub(gap, gap_before), splat(-kTiny)));
+        const FVec back = div(gap, hn::Min(hn::Sub(gap, gap_before), splat(-kTiny)));
         const FVec hit = hn::Sub(layer, hn::Mul(back, splat(kParallaxStep)));
         const FMask meets = hn::And(above, hn::Le(gap, zero));
         depth = hn::IfThenElse(meets, i == 0 ? zero : hit, depth);

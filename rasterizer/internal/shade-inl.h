@@ -44,7 +44,7 @@ HWY_INLINE IVec packOctahedral(const Vec3& n) {
     const FVec zero = hn::Zero(FTag()), one = splat(1.0f);
     const FVec sum =
         hn::Max(hn::Add(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Abs(n.z)), splat(kTiny));
-    const FVec inv = hn::Div(one, sum);
+    const FVec inv = div(one, sum);
     const FVec px = hn::Mul(n.x, inv), py = hn::Mul(n.y, inv);
     const auto snorm = [](FVec f) {
         return hn::And(roundSmall(hn::Mul(f, splat(kSnormScale))), splatInt(0xFFFF));
@@ -65,7 +65,7 @@ struct LaneReprojected {
 
 HWY_INLINE FVec safeInverse(FVec w) {
     const FVec one = splat(1.0f);
-    return hn::Div(one, hn::IfThenElse(hn::Gt(w, splat(1e-20f)), w, one));
+    return div(one, hn::IfThenElse(hn::Gt(w, splat(1e-20f)), w, one));
 }
 
 HWY_INLINE LaneReprojected reprojectStatic(const TileContext& tile, FVec x, FVec y, FVec depth) {

@@ -37,8 +37,8 @@ HWY_INLINE Vec3 scale3(const Vec3& a, FVec s) {
 }
 
 HWY_INLINE Vec3 normalize3(const Vec3& a) {
-    const FVec length = hn::Sqrt(hn::Max(dot3(a, a), splat(kTiny)));
-    return scale3(a, hn::Div(splat(1.0f), length));
+    const FVec length = squareRoot(hn::Max(dot3(a, a), splat(kTiny)));
+    return scale3(a, div(splat(1.0f), length));
 }
 
 /// An integral value below 2^22 as an integer: the sum with 1.5 · 2^23 holds it in its low bits.
@@ -151,8 +151,7 @@ HWY_INLINE LaneBarycentrics barycentrics(const Triangles& t, FVec x, FVec y) {
             hn::Add(hn::Add(p.word[k], hn::Mul(dy.word[k], ry)), hn::Mul(dx.word[k], rx));
         out.b[k] = hn::Max(v, hn::Zero(FTag()));
     }
-    out.w =
-        hn::Div(splat(1.0f), hn::Max(hn::Add(hn::Add(out.b[0], out.b[1]), out.b[2]), splat(kTiny)));
+    out.w = div(splat(1.0f), hn::Max(hn::Add(hn::Add(out.b[0], out.b[1]), out.b[2]), splat(kTiny)));
     for (FVec& b : out.b) {
         b = hn::Mul(b, out.w);
     }

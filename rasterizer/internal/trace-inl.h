@@ -128,9 +128,9 @@ HWY_INLINE uint32_t blockMask(const TriangleBlock& block, const TraceRay& ray, f
             hn::And(hn::Gt(ahead, zero), hn::Le(ahead, hn::Mul(hn::Set(d, end), hn::Abs(det))));
         const uint32_t bits = maskBits(d, hn::And(inside, reached));
         if (bits != 0) {
-            hn::Store(hn::Div(t, det), d, hits.t + i);
-            hn::Store(hn::Div(v, det), d, hits.b1 + i);
-            hn::Store(hn::Div(w, det), d, hits.b2 + i);
+            hn::Store(div(t, det), d, hits.t + i);
+            hn::Store(div(v, det), d, hits.b1 + i);
+            hn::Store(div(w, det), d, hits.b2 + i);
             mask |= bits << i;
         }
     }

@@ -29,7 +29,7 @@ struct Packet {
             const auto tiny = hn::Lt(hn::Abs(direction[k]), least);
             origin[k] = o[k];
             inverse[k] =
-                hn::Div(one, hn::IfThenElse(tiny, hn::CopySign(least, direction[k]), direction[k]));
+                div(one, hn::IfThenElse(tiny, hn::CopySign(least, direction[k]), direction[k]));
             const uint32_t negative = packetBits(hn::Lt(inverse[k], zero)) & active;
             if (negative != 0 && negative != active) {
                 return false;
@@ -52,7 +52,7 @@ struct Packet {
         }
         kx = kz == 2 ? 0 : kz + 1;
         ky = kx == 2 ? 0 : kx + 1;
-        sz = hn::Div(one, direction[kz]);
+        sz = div(one, direction[kz]);
         sx = hn::Mul(direction[kx], sz);
         sy = hn::Mul(direction[ky], sz);
         return true;
@@ -100,8 +100,8 @@ struct Packet {
             hn::And(hn::Gt(ahead, zero), hn::Le(ahead, hn::Mul(end, hn::Abs(det))));
         const uint32_t bits = packetBits(hn::And(inside, reached));
         if (bits != 0 && (block.triangle[i] & kHolesBit) != 0) {
-            hn::StoreU(hn::Div(v, det), d, b1);
-            hn::StoreU(hn::Div(w, det), d, b2);
+            hn::StoreU(div(v, det), d, b1);
+            hn::StoreU(div(w, det), d, b2);
         }
         return bits;
     }

@@ -27,6 +27,8 @@ TraceKernels traceHere() {
 }  // namespace still::internal
 HWY_AFTER_NAMESPACE();
 #else
+#include "rasterizer/internal/lanes-inl.h"
+// The others build on it.
 #include "rasterizer/internal/trace-inl.h"
 #endif
 

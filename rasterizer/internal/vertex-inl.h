@@ -34,7 +34,7 @@ void transformGroup(D d, const VertexJob& job, int i) {
     const auto near_ok = hn::And(hn::Le(z, w), hn::Gt(w, hn::Set(d, 1e-20f)));
     const auto ok_div = hn::And(near_ok, finite);
 
-    const V r = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(ok_div, w, hn::Set(d, 1.0f)));
+    const V r = div(hn::Set(d, 1.0f), hn::IfThenElse(ok_div, w, hn::Set(d, 1.0f)));
     const V sx = hn::Mul(hn::Mul(x, r), hn::Set(d, job.scale_x_fx8));
     const V sy = hn::Mul(hn::Mul(y, r), hn::Set(d, job.scale_y_fx8));
     const V guard = hn::Set(d, job.guard_fx8);
