@@ -191,7 +191,7 @@ class Run {
             after_second_cycle_ = live;
             return {};
         }
-        constexpr int64_t kThreadsBytes = 256 << 10, kBytesPerChange = 2 * 2 * 8;
+        constexpr int64_t kThreadsBytes = 1 << 20, kBytesPerChange = 2 * 2 * 8;
         const auto changes = std::count_if(life_.steps.begin(), life_.steps.end(),
                                            [](const Step& step) { return step.ratio_fx8 != 0; });
         const int64_t allowed =

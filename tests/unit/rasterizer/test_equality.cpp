@@ -123,6 +123,23 @@ TEST_CASE("equality: what a rasterizer and a G-buffer drew before does not show"
     }
 }
 
+TEST_CASE("equality: a rasterizer may be moved, and even between its two steps", "[determinism]") {
+    Workers workers(2);
+    Rasterizer rasterizer;
+    for (uint64_t seed : {4, 5}) {
+        const FrameView view = busyView(seed);
+        TestScene scene = busyScene(seed);
+        const DrawList list = scene.list();
+        rasterizer.transformAndBin(list, view, {.planes = kAllPlanes}, workers);
+        Rasterizer elsewhere(std::move(rasterizer));
+        GBuffer out;
+        elsewhere.rasterize(out, workers);
+        rasterizer = std::move(elsewhere);
+        CAPTURE(seed);
+        CHECK(firstDifference(truth(scene, view), out) == "");
+    }
+}
+
 TEST_CASE("equality: a camera that stops leaves no motion behind", "[determinism]") {
     Workers workers(1);
     Rasterizer rasterizer;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "rasterizer/workers.h"
@@ -153,4 +154,41 @@ TEST_CASE("workers: an observer hears of every grain once, until it is taken awa
     workers.observe(nullptr);
     grains(workers, 190, 3);
     CHECK(ear.sections.size() == 2);
+}
+
+TEST_CASE("workers: 1 to 64 of them come and go, with work or without", "[workers]") {
+    for (int round = 0; round < 3; ++round) {
+        for (int threads = 1; threads <= 64; ++threads) {
+            Workers workers(threads);
+            CAPTURE(threads);
+            if ((threads + round) % 3 != 0) {
+                CHECK(checkOnce(grains(workers, threads + round, 1), threads + round, 1) == "");
+            }
+        }
+    }
+}
+
+TEST_CASE("workers: threads that share them take turns", "[workers]") {
+    const Schedule schedule = GENERATE(Schedule::pooled, Schedule::shuffled);
+    Workers workers(3, schedule);
+    std::atomic<int> wrong{0};
+    const auto sum = [&](int count) {
+        for (int round = 0; round < 200; ++round) {
+            std::atomic<int> total{0};
+            workers.parallelFor(count, 2, [&](int begin, int end, int) {
+                for (int k = begin; k < end; ++k) {
+                    total += k;
+                }
+            });
+            wrong += total == count * (count - 1) / 2 ? 0 : 1;
+        }
+    };
+    std::vector<std::thread> threads;
+    for (int count : {3, 50, 101, 10}) {
+        threads.emplace_back(sum, count);
+    }
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+    CHECK(wrong == 0);
 }
