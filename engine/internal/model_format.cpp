@@ -1,15 +1,11 @@
 #include "engine/internal/model_format.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 #include <type_traits>
 
 #include "engine/hash.h"
-#include "engine/internal/image_load.h"
-#include "engine/internal/obj_text.h"
-#include "rasterizer/texture_layout.h"
+#include "rasterizer/draw_list_check.h"
 
 namespace still {
 namespace {
@@ -21,22 +17,9 @@ constexpr size_t pieceBytes() {
     return kPieceBytes / sizeof(T) * sizeof(T);
 }
 
-/// False for what is not a number, too.
-bool within(float value, float limit) {
-    return std::abs(value) <= limit;
-}
-
 // What elements may be. Objects and not functions, so that loops are compiled for each.
-constexpr float kUnit = 1.001f, kMaxTexcoord = 32768.0f;
-constexpr auto isCoordinate = [](float value) { return within(value, float(kMaxObjNumber)); };
-constexpr auto areAttributes = [](const VertexAttributes& a) {
-    return within(a.nx, kUnit) && within(a.ny, kUnit) && within(a.nz, kUnit) &&
-           within(a.u, kMaxTexcoord) && within(a.v, kMaxTexcoord);
-};
-constexpr auto isTangent = [](const VertexTangent& t) {
-    return within(t.x, kUnit) && within(t.y, kUnit) && within(t.z, kUnit) &&
-           std::abs(t.handedness) == 1.0f;
-};
+constexpr auto isCoordinate = [](float value) { return within(value, kMaxPosition); };
+constexpr auto isElement = [](const auto& element) { return isSound(element); };
 constexpr auto isTexel = [](uint32_t word) { return word >> 30 == 0; };
 constexpr auto isAnything = [](auto) { return true; };
 
@@ -67,8 +50,8 @@ void describe(Io& io, Mesh& mesh) {
     io.array(x, isCoordinate);
     io.array(y, isCoordinate);
     io.array(z, isCoordinate);
-    io.array(attributes, areAttributes);
-    io.array(tangents, isTangent);
+    io.array(attributes, isElement);
+    io.array(tangents, isElement);
     io.array(indices, isAnything);
     io.list(parts, [&](MeshPart& part) {
         auto& [first_triangle, triangle_count, material] = part;
@@ -204,66 +187,6 @@ class Reader {
     bool good_ = true;
 };
 
-bool isSound(const Mesh& mesh, std::span<const Material> materials) {
-    const size_t n = mesh.x.size();
-    uint64_t triangles = 0;
-    bool tangents = false;
-    for (const MeshPart& part : mesh.parts) {
-        if (part.first_triangle != triangles || part.triangle_count == 0 ||
-            part.material >= materials.size()) {
-            return false;
-        }
-        triangles += part.triangle_count;
-        const Material& material = materials[part.material];
-        tangents |= material.normal_texture != kNoTexture || material.height_texture != kNoTexture;
-    }
-    return triangles > 0 && mesh.y.size() == n && mesh.z.size() == n &&
-           mesh.attributes.size() == n &&
-           ((mesh.tangents.empty() && !tangents) || mesh.tangents.size() == n) &&
-           mesh.indices.size() == triangles * 3 &&
-           std::all_of(mesh.indices.begin(), mesh.indices.end(),
-                       [n](uint32_t index) { return index < n; });
-}
-
-template <class AnyTexture>
-bool isSoundTexture(const AnyTexture& texture) {
-    if (texture.levels.empty() || texture.wrap > Wrap::clamp) {
-        return false;
-    }
-    std::vector<TextureLevel> laid_out;
-    for (size_t k = 0; k < texture.levels.size(); ++k) {
-        const TextureLevel& level = texture.levels[k];
-        const TextureLevel& above = texture.levels[k == 0 ? 0 : k - 1];
-        const bool halved = level.width == std::max(above.width / 2, 1u) &&
-                            level.height == std::max(above.height / 2, 1u);
-        if (level.width < 1 || level.height < 1 || level.width > uint32_t(kMaxImageSize) ||
-            level.height > uint32_t(kMaxImageSize) || (k > 0 && !halved)) {
-            return false;
-        }
-        addLevel(laid_out, level.width, level.height);
-        if (level.offset != laid_out[k].offset || level.stride != laid_out[k].stride) {
-            return false;
-        }
-    }
-    return texture.texels.size() == texelCount(laid_out);
-}
-
-bool isSound(const Material& m, size_t textures, size_t alpha_textures) {
-    const auto inRange = [](int32_t texture, size_t count) {
-        return texture >= kNoTexture && texture < int64_t(count);
-    };
-    const auto areColours = [](const std::array<float, 3>& colour) {
-        return std::all_of(colour.begin(), colour.end(),
-                           [](float c) { return c >= 0 && c <= 1e6f; });
-    };
-    return areColours(m.diffuse) && areColours(m.specular) && areColours(m.emission) &&
-           m.shininess >= 1 && m.shininess <= 1024 && m.opacity >= 0 && m.opacity <= 1 &&
-           m.height_scale >= 0 && m.height_scale <= 1 && within(m.u_offset, 1) &&
-           within(m.v_offset, 1) && m.alpha_mode <= AlphaMode::stochastic &&
-           inRange(m.colour_texture, textures) && inRange(m.normal_texture, textures) &&
-           inRange(m.alpha_texture, alpha_textures) && inRange(m.height_texture, alpha_textures);
-}
-
 }  // namespace
 
 ArrayInfo FlatArray::info() const {
@@ -291,14 +214,13 @@ std::vector<ModelFill> unflatten(std::string_view table, std::span<const ArrayIn
 
 bool isSound(const ObjModel& model) {
     const size_t textures = model.textures.size(), alphas = model.alpha_textures.size();
-    return isSound(model.mesh, model.materials) &&
+    const auto sound = [](const auto& texture) { return flawOf(texture) == nullptr; };
+    return flawOfIndices(model.mesh, model.materials) == nullptr && !model.mesh.indices.empty() &&
            model.material_names.size() == model.materials.size() &&
            std::all_of(model.materials.begin(), model.materials.end(),
-                       [&](const Material& m) { return isSound(m, textures, alphas); }) &&
-           std::all_of(model.textures.begin(), model.textures.end(),
-                       [&](const Texture& t) { return isSoundTexture(t); }) &&
-           std::all_of(model.alpha_textures.begin(), model.alpha_textures.end(),
-                       [&](const AlphaTexture& t) { return isSoundTexture(t); });
+                       [&](const Material& m) { return flawOf(m, textures, alphas) == nullptr; }) &&
+           std::all_of(model.textures.begin(), model.textures.end(), sound) &&
+           std::all_of(model.alpha_textures.begin(), model.alpha_textures.end(), sound);
 }
 
 }  // namespace still
