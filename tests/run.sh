@@ -14,7 +14,9 @@ case "${1:-}" in
         ;;
 esac
 
-install_packages clang libbenchmark-dev xvfb libgtest-dev parallel "${still_peer_packages[@]}"
+# Compilers and emulators for the targets of the matrix that every run builds.
+mapfile -t matrix_packages < <(tests/matrix/target.sh --quick | xargs -n 1 tests/matrix/target.sh --packages)
+install_packages "${matrix_packages[@]}" clang libbenchmark-dev xvfb libgtest-dev parallel "${still_peer_packages[@]}"
 cmake --preset release -DSTILL_TESTS=ON >/dev/null
 cmake --build --preset release
 ctest --preset release --parallel "$(nproc)" "${select[@]}"

@@ -10,10 +10,10 @@ namespace HWY_NAMESPACE {
 /// The output pixels of a group of the frame's pixels.
 struct OutputBlock {
     const OutputColumns& columns;
-    int x, y, i;         ///< the group's first pixel; its number in the tile
-    int across, y0, y1;  ///< in each pixel at most; rows
-    int offset_y[kMaxUpscale];
-    MS wanted[kMaxUpscale][kMaxUpscale];  ///< by row and number in the pixel
+    int x, y, i;                     ///< the group's first pixel; its number in the tile
+    int across = 0, y0 = 0, y1 = 0;  ///< in each pixel at most; rows
+    int offset_y[kMaxUpscale]{};
+    MS wanted[kMaxUpscale][kMaxUpscale]{};  ///< by row and number in the pixel
 };
 
 /// A group of the frame's pixels.

@@ -1,11 +1,11 @@
-// determinism [--update] [--few] [--report] [--table FILE]
+// determinism [--update | --few | --report] [--table FILE]
 // Renders the built-in scenes with every SIMD target, scheduler and thread count and compares the
 // hashes of all stages with the committed table. Exit code: 0 equal, 1 some pixels differ, 2 the
 // table or a scene cannot be had.
-// --report prints a line per scene and SIMD target for programs: SCENE TARGET HASH TIME, tabs in
-// between; HASH is over all stages and frames, that of the first run that differs from the table if
-// there is one; TIME is the processor time of the target's first run in milliseconds. The lines of
-// the target "table" hold what is expected.
+// --report runs every SIMD target on one thread and on several and prints for programs, with tabs
+// in between: SCENE TARGET HASH TIME. HASH is over all stages and frames, that of the first run
+// that differs from the table if there is one; TIME is the processor time on one thread in
+// milliseconds. The lines of the target "table" hold what is expected.
 
 #include <cstdio>
 #include <cstring>
@@ -66,23 +66,33 @@ struct Configuration {
     }
 };
 
-/// All combinations, or of each kind one: enough to compare compilers.
-std::vector<Configuration> configurations(bool few) {
-    if (few) {
+/// How many ways to run each scene.
+enum class Extent {
+    all,          ///< all combinations
+    few,          ///< of each kind one: enough to compare compilers
+    each_target,  ///< every SIMD target alone and with threads
+};
+
+std::vector<Configuration> configurations(Extent extent) {
+    if (extent == Extent::few) {
         return {{SimdTarget::scalar, Schedule::serial, 1},
                 {bestSimdTarget(), Schedule::pooled, 2},
                 {bestSimdTarget(), Schedule::shuffled, 1, Shading::forward}};
     }
-    std::vector<Configuration> all;
+    std::vector<Configuration> list;
     for (SimdTarget simd : availableSimdTargets()) {
-        all.push_back({simd, Schedule::serial, 1});
-        all.push_back({simd, Schedule::serial, 1, Shading::forward});
-        all.push_back({simd, Schedule::shuffled, 1});
+        list.push_back({simd, Schedule::serial, 1});
+        if (extent == Extent::each_target) {
+            list.push_back({simd, Schedule::pooled, 3, Shading::forward});
+            continue;
+        }
+        list.push_back({simd, Schedule::serial, 1, Shading::forward});
+        list.push_back({simd, Schedule::shuffled, 1});
         for (int threads : {1, 2, 3, 8}) {
-            all.push_back({simd, Schedule::pooled, threads});
+            list.push_back({simd, Schedule::pooled, threads});
         }
     }
-    return all;
+    return list;
 }
 
 SceneRecord render(const Case& c, const Scene& scene, const Configuration& configuration) {
@@ -130,7 +140,8 @@ struct ReportLine {
     bool equal = true;
 };
 
-/// Takes the run into its target's line: the first one counts, or the first that differs.
+/// Takes the run into its target's line: the time of the first one, the hash of it or of the first
+/// that differs.
 void note(std::vector<ReportLine>& report, const ReportLine& run) {
     for (ReportLine& line : report) {
         if (line.simd == run.simd) {
@@ -154,7 +165,8 @@ void print(const Case& c, const SceneRecord& expected, const std::vector<ReportL
 }
 
 struct Options {
-    bool update = false, few = false, report = false;
+    bool update = false, report = false;
+    Extent extent = Extent::all;
     std::string table = STILL_SOURCE_DIR "/tests/determinism/hashes.txt";
 };
 
@@ -201,7 +213,7 @@ int check(const Options& options) {
             return 2;
         }
         std::vector<ReportLine> report;
-        for (const Configuration& configuration : configurations(options.few)) {
+        for (const Configuration& configuration : configurations(options.extent)) {
             const std::clock_t start = std::clock();
             const SceneRecord found = render(c, *scene, configuration);
             const double time_ms = double(std::clock() - start) * 1000 / CLOCKS_PER_SEC;
@@ -228,14 +240,15 @@ int main(int argc, char** argv) {
         if (std::strcmp(argv[k], "--update") == 0) {
             options.update = true;
         } else if (std::strcmp(argv[k], "--few") == 0) {
-            options.few = true;
+            options.extent = still::determinism::Extent::few;
         } else if (std::strcmp(argv[k], "--report") == 0) {
             options.report = true;
+            options.extent = still::determinism::Extent::each_target;
         } else if (std::strcmp(argv[k], "--table") == 0 && k + 1 < argc) {
             options.table = argv[++k];
         } else {
             std::fprintf(stderr,
-                         "usage: determinism [--update] [--few] [--report] [--table FILE]\n");
+                         "usage: determinism [--update | --few | --report] [--table FILE]\n");
             return 2;
         }
     }
