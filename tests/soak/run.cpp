@@ -241,7 +241,6 @@ class Run {
 }  // namespace
 
 std::string runLife(const Life& life, Control control, Totals& totals) {
-    sceneNamed(life.scene);
     const int64_t before = liveBytes();
     std::string wrong = Run(life, control, totals).run();
     ++totals.lives;

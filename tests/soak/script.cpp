@@ -240,11 +240,19 @@ Life makeLife(uint64_t seed, int number) {
     return life;
 }
 
-const Scene& sceneNamed(const std::string& name) {
+static std::map<std::string, Scene>& madeScenes() {
     static std::map<std::string, Scene> scenes;
-    const auto found = scenes.find(name);
-    return found != scenes.end() ? found->second
-                                 : scenes.emplace(name, builtinScene(name).value()).first->second;
+    return scenes;
+}
+
+void makeScenes() {
+    for (const char* name : kScenes) {
+        madeScenes().emplace(name, builtinScene(name).value());
+    }
+}
+
+const Scene& sceneNamed(const std::string& name) {
+    return madeScenes().at(name);
 }
 
 }  // namespace still::soak

@@ -49,7 +49,8 @@ struct Life {
 /// Life `number` of the run with this seed.
 Life makeLife(uint64_t seed, int number);
 
-/// Made when first asked for.
+/// Of all lives. They stay, so they are made before memory is watched.
+void makeScenes();
 const Scene& sceneNamed(const std::string& name);
 
 }  // namespace still::soak
