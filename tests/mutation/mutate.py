@@ -204,17 +204,20 @@ def main():
     options = parser.parse_args()
 
     equivalent = read_equivalent()
-    drawn = (m for m in mutators.sample(ROOT, options.seed)
-             if options.only in m.file or options.only in m.before)  # fmt: skip
+
+    def drawn(root):
+        return (m for m in mutators.sample(root, options.seed)
+                if options.only in m.file or options.only in m.before)  # fmt: skip
+
     if options.list:
-        for _, mutant in zip(range(options.count), drawn):
-            print(f"{mutant.file}:{mutant.line}: {mutant.kind}\n- {mutant.before}\n+ {mutant.after}\n")
+        for _, m in zip(range(options.count), drawn(ROOT)):
+            print(f"{m.file}:{m.line}: {m.kind}\n- {m.before}\n+ {m.after}\n")
         return 0
     if platform.machine() == "x86_64" and "avx2" not in Path("/proc/cpuinfo").read_text():
         sys.exit("A processor with AVX2 is needed.")
     bench = Bench(options.work.resolve())
     results, skipped, start = [], collections.Counter(), time.monotonic()
-    for mutant in drawn:
+    for mutant in drawn(bench.tree):
         if len(results) == options.count:
             break
         if mutant.key() in equivalent:

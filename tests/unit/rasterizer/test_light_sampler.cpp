@@ -8,89 +8,12 @@
 
 #include "rasterizer/internal/light_random.h"
 #include "tests/support/busy_scene.h"
-#include "tests/support/plane_compare.h"
+#include "tests/unit/rasterizer/light_runs.h"
 
 using namespace still;
 using namespace still::test;
 
 namespace {
-
-constexpr double kOne = 4096.0;  // of fx12
-
-TestVertex cornerAt(double x, double y, double z, double nx, double ny, double nz) {
-    return {float(x), float(y), float(z), {float(nx), float(ny), float(nz), 0, 0}};
-}
-
-/// A quad y = `height` around (x, z), its normal up.
-void addFloor(TestScene& scene, double x, double z, double half, double height) {
-    scene.addQuad({cornerAt(x - half, height, z + half, 0, 1, 0),
-                   cornerAt(x + half, height, z + half, 0, 1, 0),
-                   cornerAt(x + half, height, z - half, 0, 1, 0),
-                   cornerAt(x - half, height, z - half, 0, 1, 0)});
-}
-
-/// From (0, 2, 4) down to the origin.
-FrameView viewOfFloor(int width, int height) {
-    FrameView view;
-    view.width = width;
-    view.height = height;
-    const double s = 1 / std::sqrt(5.0);  // right, up, back of the camera in rows
-    glm::dmat4 camera(1.0);
-    camera[1] = {0, 2 * s, s, 0};
-    camera[2] = {0, -s, 2 * s, 0};
-    camera[3] = {0, 0, -2 / s, 1};
-    view.view_projection = perspective(4.0, double(width) / height, 0.1, 100) * camera;
-    view.view_projection_before = view.view_projection;
-    view.eye = glm::vec3(0, 2, 4);
-    return view;
-}
-
-struct Light {
-    double direct = 0, indirect = 0;
-};
-
-/// Renders frames one after the other.
-struct Sampling {
-    explicit Sampling(SimdTarget target = SimdTarget::scalar) : simd(target) {}
-
-    SimdTarget simd;
-    Workers workers{1, Schedule::serial};
-    LightSampler sampler;
-    GBuffer gbuffer;
-    LightImages light;
-    LightChangeImages change;
-    bool changed = false;
-
-    void frame(TestScene& scene, const FrameView& view) {
-        const DrawList list = scene.list();
-        draw(list, view, gbuffer, {.simd = simd, .planes = kAllPlanes});
-        sampler.setUp(list, view, simd, workers);
-        changed = sampler.changes(change, workers);
-        sampler.sample(gbuffer, light, true, workers);
-    }
-};
-
-/// Mean of the green light at the pixel in the middle, over `samples` samples.
-Light meanLight(TestScene& scene, FrameView view, int samples) {
-    Sampling run;
-    Light mean;
-    for (int i = 0; i < samples; ++i) {
-        view.sample = uint32_t(i);
-        run.frame(scene, view);
-        const int x = view.width / 2, y = view.height / 2;
-        mean.direct += run.light.direct_green.at(x, y) / kOne / samples;
-        mean.indirect += run.light.indirect_green.at(x, y) / kOne / samples;
-    }
-    return mean;
-}
-
-TestScene floorScene() {
-    TestScene scene;
-    scene.lighting = {};
-    scene.addMesh();
-    addFloor(scene, 0, 0, 20, 0);
-    return scene;
-}
 
 const FrameView kSmall = viewOfFloor(9, 9);
 
@@ -292,44 +215,11 @@ TEST_CASE("light sampler: the same bytes on every target, in every order", "[det
         sampled.rectangles = {{{2, 3, -6}, {1, 0, 0}, {0, 0, 1}, {20, 30, 10}}};
         FrameView view = busyView(seed);
         view.sample = 5;
-        const auto bytes = [&](Workers& workers, SimdTarget target) {
-            const DrawList list = scene.list();
-            GBuffer gbuffer;
-            draw(list, view, gbuffer);
-            LightSampler sampler;
-            LightImages light;
-            LightChangeImages change;
-            std::vector<uint16_t> all;
-            const auto append = [&](const Image<uint16_t>& plane) {
-                for (int y = 0; y < plane.height(); ++y) {
-                    const uint16_t* row = plane.view().row(y);
-                    all.insert(all.end(), row, row + plane.width());
-                }
-            };
-            for (int i = 0; i < 2; ++i) {  // the instances of a busy scene move
-                sampler.setUp(list, view, target, workers);
-                sampler.changes(change, workers);
-                sampler.sample(gbuffer, light, true, workers);
-                for (const auto* plane :
-                     {&light.direct_red, &light.direct_blue, &light.indirect_red,
-                      &light.indirect_blue, &change.direct_before, &change.direct_now,
-                      &change.indirect_before, &change.indirect_now, &gbuffer.red}) {
-                    append(*plane);
-                }
-            }
-            return all;
-        };
         Workers serial(1, Schedule::serial);
-        const std::vector<uint16_t> expected = bytes(serial, SimdTarget::scalar);
-        REQUIRE(std::count(expected.begin(), expected.end(), 0) <
-                ptrdiff_t(expected.size()) * 3 / 4);
-        for (SimdTarget target : availableSimdTargets()) {
-            CAPTURE(seed, name(target));
-            CHECK(bytes(serial, target) == expected);
-        }
-        Workers three(3), shuffled(1, Schedule::shuffled, seed);
-        CHECK(bytes(three, bestSimdTarget()) == expected);
-        CHECK(bytes(shuffled, bestSimdTarget()) == expected);
+        const std::vector<uint16_t> all = busyBytes(scene, view, serial, SimdTarget::scalar);
+        REQUIRE(std::count(all.begin(), all.end(), 0) < ptrdiff_t(all.size()) * 3 / 4);
+        CAPTURE(seed);
+        CHECK(differingBytes(scene, view) == "");
     }
 }
 
