@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mutate.py [--count N] [--seed S] [--only TEXT] [--list] [--work DIR]
+"""mutate.py [--count N] [--seed S] [--only REGEX] [--list] [--work DIR]
 
 Do the tests notice when a kernel is wrong? Copies the tree, changes one line of a kernel, builds
 what that touches, runs the determinism table and the unit tests, and stops at the first failure.
@@ -198,7 +198,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[2])
     parser.add_argument("--count", type=int, default=120, help="mutants to build and test")
     parser.add_argument("--seed", type=int, default=7, help="of the sample")
-    parser.add_argument("--only", default="", help="mutants whose file or line holds this text")
+    parser.add_argument("--only", default="", help="mutants of which 'file: line' matches this")
     parser.add_argument("--list", action="store_true", help="print the sample, build nothing")
     parser.add_argument("--work", type=Path, default=ROOT / "build/mutation", help="folder to use")
     options = parser.parse_args()
@@ -207,7 +207,7 @@ def main():
 
     def drawn(root):
         return (m for m in mutators.sample(root, options.seed)
-                if options.only in m.file or options.only in m.before)  # fmt: skip
+                if re.search(options.only, f"{m.file}: {m.before}"))  # fmt: skip
 
     if options.list:
         for _, m in zip(range(options.count), drawn(ROOT)):

@@ -227,3 +227,29 @@ TEST_CASE("limits: counters tell what became of tiles, blocks and pixels", "[lim
         }
     }
 }
+
+TEST_CASE("limits: blocks count as hidden within a triangle's box, and nowhere else", "[limits]") {
+    FrameView view;
+    view.width = view.height = kTileSize;
+    TestScene scene;
+    const double far = 4 * kTileSize;
+    scene.addTriangle(atPixel(view, -far, -far, 0.5), atPixel(view, -far, far, 0.5),
+                      atPixel(view, far, far / 8, 0.5));
+    // Columns 20 … 50 and rows 12 … 38, all of it behind.
+    scene.addTriangle(atPixel(view, 20, 12, 0.25), atPixel(view, 20, 39, 0.25),
+                      atPixel(view, 51, 12, 0.25));
+    const DrawList list = scene.list();
+    Workers workers(1);
+    for (SimdTarget target : availableSimdTargets()) {
+        Rasterizer rasterizer;
+        GBuffer out;
+        rasterizer.transformAndBin(list, view, {.simd = target, .planes = {}}, workers);
+        rasterizer.rasterize(out, workers);
+        REQUIRE(coveredPixels(out) == kTileSize * kTileSize);
+        if (target != SimdTarget::scalar) {
+            CAPTURE(name(target));
+            CHECK(rasterizer.counters().blocks_hidden == 5 * 4);
+            CHECK(rasterizer.counters().blocks_outside == 0);
+        }
+    }
+}
