@@ -360,6 +360,11 @@ TEST_CASE("story: the box of the gather's window is that of its nine samples", "
     Player player;
     player.play(panning(1.3, 0.4), 0, 3);
     const GBuffer& g = player.gbuffer;
+    Workers workers(1, Schedule::serial);
+    Planes lows(112, 80), middles(112, 80), highs(112, 80);
+    player.taa.storyPlane(g, StoryPlane::box_low, lows.targets(), workers);
+    player.taa.storyPlane(g, StoryPlane::box_middle, middles.targets(), workers);
+    player.taa.storyPlane(g, StoryPlane::box_high, highs.targets(), workers);
     for (const auto& [x, y] : {std::array{0, 0}, std::array{50, 31}, std::array{111, 79}}) {
         const PixelStory story = player.taa.story(g, x, y);
         StoryColour low{65535, 65535, 65535}, high{};
@@ -374,5 +379,8 @@ TEST_CASE("story: the box of the gather's window is that of its nine samples", "
         CHECK(story.box_rgb.low == low);
         CHECK(story.box_rgb.high == high);
         CHECK(story.window[4] == story.raw);
+        CHECK(lows.at(x, y) == low);
+        CHECK(middles.at(x, y) == story.box_rgb.middle);
+        CHECK(highs.at(x, y) == high);
     }
 }
