@@ -29,6 +29,7 @@ if [ ${#targets[@]} -eq 0 ]; then
 fi
 packages=()
 for name in "${targets[@]}"; do
+    "$target" --describe "$name" >/dev/null || exit 2
     mapfile -t -O ${#packages[@]} packages < <("$target" --packages "$name")
 done
 mapfile -t packages < <(printf '%s\n' "${packages[@]}" | sort -u)

@@ -112,7 +112,7 @@ describe() {
 # A program's version, when it is there.
 version() {
     local text
-    text="$("$1" --version 2>/dev/null)" || true
+    text="$("$1" --version 2>/dev/null)" || return 0
     grep -Eom 1 '[0-9]+\.[0-9.]*[0-9]' <<<"$text" | head -n 1 || "$1" -dumpversion
 }
 
