@@ -8,9 +8,11 @@
 
 #include "engine/hash.h"
 #include "engine/image_file.h"
+#include "engine/internal/file_access.h"
 #include "engine/internal/obj_text.h"
 #include "engine/jitter.h"
 #include "engine/load.h"
+#include "engine/memory_need.h"
 #include "postfx/metrics.h"
 
 namespace still::golden {
@@ -49,10 +51,31 @@ std::string shown(Rgb8 colour) {
            std::to_string(colour.b);
 }
 
+LoadOptions loadOptions(const Manifest& manifest, const Options& options) {
+    const std::filesystem::path& folder = manifest.folder;
+    return {.cache_folder = options.cache_folder,
+            .allow_outside = options.allow_outside,
+            .folder = folder.empty() ? "." : folder,
+            .max_memory_bytes = options.max_memory_bytes};
+}
+
+/// The file that the manifest names as the case's `key`.
+Result<std::filesystem::path> findFile(const Manifest& manifest, const Case& golden_case,
+                                       const Options& options, const char* key,
+                                       const std::string& name) {
+    return FileAccess(loadOptions(manifest, options), {})
+        .find(manifest.folder, name)
+        .map_error([&](const Error& error) {
+            return Error{golden_case.place + "/" + key + ": " + error.message};
+        });
+}
+
 Result<Scene> openScene(const Manifest& manifest, const Case& golden_case, const Options& options) {
     constexpr std::string_view kBuiltin = "builtin:";
     if (!golden_case.scene.starts_with(kBuiltin)) {
-        return loadScene(manifest.folder / golden_case.scene, options.cache_folder);
+        const LoadOptions load = loadOptions(manifest, options);
+        return findFile(manifest, golden_case, options, "scene", golden_case.scene)
+            .and_then([&](const std::filesystem::path& file) { return loadScene(file, load); });
     }
     if (!options.builtin) {
         return fail(golden_case.place + "/scene: expected a file, found " +
@@ -104,7 +127,8 @@ Result<void> open(const Manifest& manifest, const Case& golden_case, const Optio
     CameraChoice& camera = opened.settings.camera;
     camera.view = *view;
     if (!golden_case.cameras.empty()) {
-        auto cameras = loadCameraFile(manifest.folder / golden_case.cameras);
+        auto cameras = findFile(manifest, golden_case, options, "cameras", golden_case.cameras)
+                           .and_then(loadCameraFile);
         if (!cameras) {
             return tl::make_unexpected(cameras.error());
         }
@@ -114,6 +138,11 @@ Result<void> open(const Manifest& manifest, const Case& golden_case, const Optio
     const bool finished = golden_case.frames == std::vector<int>{0} &&
                           opened.settings.anti_aliasing == AntiAliasing::taa &&
                           isStill(opened.scene, camera);
+    if (auto fits = checkFrameMemory(golden_case.place, opened.scene, opened.settings,
+                                     options.max_memory_bytes);
+        !fits) {
+        return fits;
+    }
     opened.settings.subframes =
         golden_case.samples.value_or(finished ? finishingSamples(opened.settings.policy) : 1);
     return {};

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,7 +72,10 @@ struct Options {
     SimdTarget simd = bestSimdTarget();
     /// Makes the scene that a manifest calls builtin:NAME of NAME; empty: there are none.
     std::function<Result<Scene>(const std::string& name)> builtin{};
-    std::filesystem::path cache_folder{};            ///< see loadScene()
+    /// See LoadOptions. The manifest's own names are held to its folder, and scenes in it to it.
+    std::filesystem::path cache_folder{};
+    bool allow_outside = false;
+    uint64_t max_memory_bytes = std::numeric_limits<uint64_t>::max();
     std::function<void()> frame_done{};              ///< called after each compared frame
     std::function<void(const std::string&)> warn{};  ///< receives each warning of a scene, a line
 };

@@ -1,7 +1,9 @@
 #pragma once
 // Files in, Scene out. Everything here returns an Error with one clear line instead of crashing.
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 #include "engine/result.h"
@@ -9,17 +11,32 @@
 
 namespace still {
 
+/// A scene of more triangles, over all objects, is refused.
+constexpr uint64_t kMaxTriangles = uint64_t{1} << 27;
+
+/// What scenes may take from the system.
+struct LoadOptions {
+    /// Models of a megabyte and more are kept here, as they are in memory, and taken from here the
+    /// next time, unless a file that they are made of or the program has changed. Scene and
+    /// warnings are the same; a folder that cannot be used costs time only. Empty: none.
+    std::filesystem::path cache_folder{};
+    /// Files that a scene names, and those that they name, may lie anywhere; else only in
+    /// `folder` and below, links followed.
+    bool allow_outside = false;
+    std::filesystem::path folder{};  ///< empty: that of the scene
+    /// A file or image that needs more memory is refused before it is read, as far as its size
+    /// tells.
+    uint64_t max_memory_bytes = std::numeric_limits<uint64_t>::max();
+};
+
 /// Loads NAME.obj (framed by its projected bounds, default light) or NAME.json (scene file).
 /// Colour textures are decoded from sRGB and get mip chains built in linear light.
-/// With a `cache_folder`, models of a megabyte and more are kept there, as they are in memory, and
-/// taken from there the next time, unless a file that they are made of or the program has changed.
-/// Scene and warnings are the same; a folder that cannot be used costs time only.
-Result<Scene> loadScene(const std::filesystem::path& file,
-                        const std::filesystem::path& cache_folder = {});
+Result<Scene> loadScene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Text of a scene file, which begins with a brace, or else of an OBJ. `name` stands for it in
 /// messages; files that it names are looked for in the present folder.
-Result<Scene> loadSceneText(std::string text, const std::string& name);
+Result<Scene> loadSceneText(std::string text, const std::string& name,
+                            const LoadOptions& options = {});
 
 /// Gives the scene `light` or `lights`, and `background`, of a scene file instead of its own; the
 /// file's other keys are not looked at. Nothing changes after an error.

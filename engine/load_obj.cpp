@@ -18,6 +18,7 @@
 #include "engine/internal/obj_polygon.h"
 #include "engine/internal/obj_text.h"
 #include "engine/internal/obj_unique.h"
+#include "engine/memory_need.h"
 
 namespace still {
 
@@ -201,19 +202,27 @@ std::vector<std::string> escapedWords(const std::string& text) {
 }
 
 /// Files of one mtllib statement: one name, which may have blanks in it, or several names.
+/// `outside` becomes true when one of them must not be read.
 std::vector<std::filesystem::path> libraryFiles(const std::filesystem::path& folder,
-                                                const std::string& statement, InputLog& log) {
+                                                const std::string& statement, InputLog& log,
+                                                bool& outside) {
     const auto withSlashes = [](std::string name) {
         std::replace(name.begin(), name.end(), '\\', '/');
         return name;
     };
-    if (log.isFile(folder / withSlashes(statement))) {
-        return {folder / withSlashes(statement)};
+    const auto isFile = [&](const std::string& name) {
+        const bool permitted = log.access().permits(folder, name);
+        outside |= !permitted;
+        return permitted && log.isFile(folder / name);
+    };
+    const std::string whole = withSlashes(statement);
+    if (isFile(whole)) {
+        return {folder / whole};
     }
     std::vector<std::filesystem::path> files;
     for (const std::string& word : escapedWords(statement)) {
-        if (log.isFile(folder / withSlashes(word))) {
-            files.push_back(folder / withSlashes(word));
+        if (const std::string name = withSlashes(word); isFile(name)) {
+            files.push_back(folder / name);
         }
     }
     return files;
@@ -225,10 +234,13 @@ MaterialLibrary readLibraries(const std::filesystem::path& obj, const ObjFile& f
                               std::vector<std::string>& warnings) {
     MaterialLibrary library;
     for (const std::string& statement : file.libraries) {
-        const auto files = libraryFiles(obj.parent_path(), statement, log);
-        if (files.empty()) {
+        bool outside = false;
+        const auto files = libraryFiles(obj.parent_path(), statement, log, outside);
+        if (files.empty() || outside) {
             warnings.push_back(shownPath(obj) + ": material library " + shownText(statement) +
-                               ": no such file");
+                               (outside ? ": lies outside of the scene's folder and is not read; " +
+                                              std::string(FileAccess::kAdvice)
+                                        : ": no such file"));
         }
         for (const std::filesystem::path& path : files) {
             Result<std::string> text = log.read(path);
@@ -320,6 +332,9 @@ Result<ObjModel> buildModel(const std::filesystem::path& path, ObjFile file, Inp
         expected = normal_mapped;
         model.mesh = buildMesh(file, cut, expected);
     });
+    if (set.memory_error) {
+        return tl::make_unexpected(*set.memory_error);
+    }
     std::vector<bool> normal_mapped;
     for (const Material& material : set.materials) {
         normal_mapped.push_back(material.normal_texture != kNoTexture);
@@ -335,6 +350,12 @@ Result<ObjModel> buildModel(const std::filesystem::path& path, ObjFile file, Inp
     return model;
 }
 
+/// Text and what is parsed of it are in memory together.
+Result<void> checkText(const std::filesystem::path& path, size_t text_bytes, uint64_t max_bytes) {
+    constexpr uint64_t kTimes = 4;  // what ObjSource reserves, and the text itself
+    return checkMemory(shownPath(path), kTimes * text_bytes, max_bytes);
+}
+
 /// From `text`, which stands at `path` or is read from there.
 Result<ObjModel> readModel(const std::filesystem::path& path, InputLog& log,
                            std::optional<std::string> text = {}) {
@@ -342,6 +363,9 @@ Result<ObjModel> readModel(const std::filesystem::path& path, InputLog& log,
         Result<std::string> whole = text ? Result<std::string>(std::move(*text)) : log.read(path);
         if (!whole) {
             return tl::make_unexpected(whole.error());
+        }
+        if (const auto fits = checkText(path, whole->size(), log.maxMemoryBytes()); !fits) {
+            return tl::make_unexpected(fits.error());
         }
         Result<ObjFile> file = parseObj(std::move(*whole), shownPath(path));
         if (!file) {
@@ -365,19 +389,18 @@ void moveBehind(std::vector<T>& to, std::vector<T>& from) {
 
 }  // namespace
 
-Result<ObjModel> loadObj(const std::filesystem::path& path,
-                         const std::filesystem::path& cache_folder) {
-    InputLog log;
+Result<ObjModel> loadObj(const std::filesystem::path& path, const LoadOptions& options) {
+    InputLog log(options, path);
     const auto withFiles = [&log](ObjModel model) {
         for (InputLog::Entry& entry : log.entries()) {
             model.files.push_back(std::move(entry.file));
         }
         return model;
     };
-    if (cache_folder.empty()) {
+    if (options.cache_folder.empty()) {
         return readModel(path, log).map(withFiles);
     }
-    const ModelCache cache(cache_folder, path);
+    const ModelCache cache(options.cache_folder, path, log.access());
     if (std::optional<ObjModel> model = cache.load()) {
         return std::move(*model);
     }
@@ -388,8 +411,9 @@ Result<ObjModel> loadObj(const std::filesystem::path& path,
     return std::move(model).map(withFiles);
 }
 
-Result<ObjModel> parseObjModel(std::string text, const std::filesystem::path& name) {
-    InputLog log;
+Result<ObjModel> parseObjModel(std::string text, const std::filesystem::path& name,
+                               const LoadOptions& options) {
+    InputLog log(options, name);
     return readModel(name, log, std::move(text));
 }
 

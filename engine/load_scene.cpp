@@ -44,7 +44,13 @@ Result<Scene> sceneFromModel(const std::filesystem::path& file, Result<ObjModel>
     return scene;
 }
 
-Result<Scene> framed(Result<Scene> scene) {
+/// The last of the checks, and the automatic camera.
+Result<Scene> framed(const std::filesystem::path& file, Result<Scene> scene) {
+    if (scene && scene->triangleCount() > kMaxTriangles) {
+        return fail(shownPath(file) + ": " + std::to_string(scene->triangleCount()) +
+                    " triangles over all objects, expected at most " +
+                    std::to_string(kMaxTriangles));
+    }
     if (scene && scene->automatic_camera) {
         frameScene(*scene, kPleasantDirection, kUsualAspect);
     }
@@ -62,22 +68,21 @@ glm::dmat3 turnedUp(const glm::dvec3& up) {
 
 }  // namespace
 
-Result<Scene> loadScene(const std::filesystem::path& file,
-                        const std::filesystem::path& cache_folder) {
+Result<Scene> loadScene(const std::filesystem::path& file, const LoadOptions& options) {
     const std::string extension = lowerExtension(file);
     if (extension != ".obj" && extension != ".json") {
         return fail(shownPath(file) + ": unknown kind of file, expected NAME.obj or NAME.json");
     }
-    return framed(extension == ".obj" ? sceneFromModel(file, loadObj(file, cache_folder))
-                                      : loadSceneFile(file, cache_folder));
+    return framed(file, extension == ".obj" ? sceneFromModel(file, loadObj(file, options))
+                                            : loadSceneFile(file, options));
 }
 
-Result<Scene> loadSceneText(std::string text, const std::string& name) {
+Result<Scene> loadSceneText(std::string text, const std::string& name, const LoadOptions& options) {
     const size_t first = text.find_first_not_of(" \t\r\n");
     if (first != std::string::npos && text[first] == '{') {
-        return framed(parseSceneFile(text, name));
+        return framed(name, parseSceneFile(text, name, options));
     }
-    return framed(sceneFromModel(name, parseObjModel(std::move(text), name)));
+    return framed(name, sceneFromModel(name, parseObjModel(std::move(text), name, options)));
 }
 
 void setUpAxis(Scene& scene, glm::dvec3 up) {

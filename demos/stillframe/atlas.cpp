@@ -52,7 +52,7 @@ Outcome<void> addModels(const AtlasOptions& options, std::list<AtlasCase>& own, 
     const std::filesystem::path cache =
         options.cache.empty() ? usersCacheFolder() : std::filesystem::path(options.cache);
     for (const std::string& name : options.models) {
-        auto opened = openScene(name, cache, options.lights);
+        auto opened = openScene(name, loadOptions(options.limits, cache), options.lights);
         if (!opened) {
             return tl::make_unexpected(opened.error());
         }
@@ -110,6 +110,13 @@ Outcome<void> atlas(const AtlasOptions& options, Interruption& interruption) {
                    .noise = noise,
                    .quiet = options.quiet};
     std::list<AtlasCase> own;
+    for (const Size& size : {plan.resolution, plan.time_resolution}) {
+        if (auto fits = checkFrameMemory("atlas", {}, {.width = size.width, .height = size.height},
+                                         options.limits);
+            !fits) {
+            return fits;
+        }
+    }
     return chooseCases(options, plan)
         .and_then([&] { return parseModes(either(options.presets, kNoisePresets), "--presets"); })
         .map([&](std::vector<Mode> modes) { plan.modes = std::move(modes); })

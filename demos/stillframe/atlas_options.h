@@ -19,11 +19,12 @@ struct AtlasOptions {
                          ///< suite's, which has one in the suite of noise
     Size resolution{320, 180};
     std::optional<Size> time_resolution;  ///< of what is timed; empty: the same
-    int samples = 0;     ///< at most so many of a reference; 0: as each case wants
-    std::string cache;   ///< folder; empty: the user's
-    std::string output;  ///< folder, made when it is not there
+    int samples = 0;                      ///< at most so many of a reference; 0: as each case wants
+    std::string cache;                    ///< folder; empty: the user's
+    std::string output;                   ///< folder, made when it is not there
     bool json = false;
     bool quiet = false;
+    Limits limits;
 };
 
 struct ChartOptions {
@@ -37,6 +38,7 @@ struct ChartOptions {
     int reference_samples = 256;
     bool json = false;
     bool quiet = false;
+    Limits limits;
 };
 
 }  // namespace still::command

@@ -27,6 +27,7 @@ struct Plan {
     FrameSettings settings;
     int frames = 0;
     bool quiet = false;
+    Limits limits;
 };
 
 std::vector<std::string> defaultScenes() {
@@ -58,6 +59,7 @@ Outcome<void> settle(const BenchOptions& options, Plan& plan) {
     plan.scenes = options.scenes.empty() ? defaultScenes() : options.scenes;
     plan.frames = options.frames;
     plan.quiet = options.quiet;
+    plan.limits = options.limits;
     return parseThreads(options.threads)
         .map([&](std::vector<int> threads) { plan.threads = std::move(threads); })
         .and_then([&] { return parseSimd(options.simd); })
@@ -78,7 +80,7 @@ Outcome<void> settle(const BenchOptions& options, Plan& plan) {
 /// there is one copy in memory.
 Outcome<std::optional<Scene>> openMoving(const Plan& plan, const std::string& name,
                                          BenchMotion motion) {
-    return openScene(name).map([&](Scene scene) {
+    return openScene(name, loadOptions(plan.limits, {})).map([&](Scene scene) {
         if (motion == kBenchMotions[0]) {
             printWarnings(scene.warnings, plan.quiet);
         }
@@ -102,6 +104,12 @@ Outcome<BenchReport> measure(const Plan& plan) {
                 return tl::make_unexpected(scene.error());
             }
             if (*scene) {
+                if (const auto fits = checkFrameMemory(name, **scene, plan.settings, plan.limits,
+                                                       int(plan.threads.size()));
+                    !fits) {
+                    progress.clear();
+                    return tl::make_unexpected(fits.error());
+                }
                 auto results = measureCase({.scene = name,
                                             .motion = still::name(motion),
                                             .content = &**scene,

@@ -19,6 +19,7 @@ struct BenchOptions {
     std::string simd;  ///< empty: the best
     bool json = false;
     bool quiet = false;
+    Limits limits;
 };
 
 /// "1,2,4", each 1 … 256.

@@ -33,11 +33,17 @@ Outcome<void> openScenes(const ChartOptions& options, std::list<ChartScene>& sce
     const std::filesystem::path cache =
         options.cache.empty() ? usersCacheFolder() : std::filesystem::path(options.cache);
     for (const std::string& text : options.scenes) {
-        auto opened = openScene(text, cache, options.lights);
+        auto opened = openScene(text, loadOptions(options.limits, cache), options.lights);
         if (!opened) {
             return tl::make_unexpected(opened.error());
         }
         printWarnings(opened->warnings, options.quiet);
+        const Size& size = options.resolution;
+        if (auto fits = checkFrameMemory(
+                text, *opened, {.width = size.width, .height = size.height}, options.limits);
+            !fits) {
+            return fits;
+        }
         frameForAspect(*opened, options.resolution.width, options.resolution.height);
         std::string name = plainName(text);
         const auto taken = [&](const ChartScene& scene) { return scene.name == name; };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "demos/stillframe/interruption.h"
+#include "demos/stillframe/limits.h"
 #include "demos/stillframe/options.h"
 
 namespace still::command {
@@ -14,6 +15,7 @@ namespace still::command {
 struct Subcommand {
     const CLI::App* app = nullptr;
     std::function<Outcome<ExitCode>(Interruption&)> run;
+    const Limits* limits = nullptr;  ///< of commands that open scenes; lives as long as `run`
 };
 
 // cli_render.cpp
@@ -87,6 +89,16 @@ inline void addLights(CLI::App& command, std::string& lights) {
                     "Scene file whose lights and background are taken instead of\n"
                     "the scene's own, as demos/scenes/sun_and_sky.json")
         ->type_name("FILE");
+}
+
+/// Of all commands that open scenes.
+inline void addLimits(CLI::App& command, Limits& limits) {
+    command.add_flag("--allow-outside", limits.allow_outside,
+                     "Scenes may name files outside of their folder");
+    addParsed(command, "--max-memory", limits.max_memory_bytes, parseBytes,
+              "As 512M or 1.5G: what would need more is refused, or ended with\n"
+              "an error; default what the machine has")
+        ->type_name("SIZE");
 }
 
 /// What every command has that may print warnings or progress.

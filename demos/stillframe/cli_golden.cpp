@@ -16,6 +16,7 @@ void addGoldenOptions(CLI::App& command, GoldenOptions& o) {
         ->type_name("I/N");
     addMachineOptions(command, o.threads, o.simd);
     command.add_flag("--json", o.json, "Print the result as one JSON object");
+    addLimits(command, o.limits);
 }
 
 }  // namespace
@@ -37,10 +38,12 @@ Subcommand declareGolden(CLI::App& app) {
         ->add_option("-o,--output", o->output,
                      "Folder for pictures and page of what differs, default DIR/out")
         ->type_name("FOLDER");
-    return {golden, [o, record](Interruption& interruption) {
+    return {golden,
+            [o, record](Interruption& interruption) {
                 return record->parsed() ? goldenRecord(*o, interruption)
                                         : goldenVerify(*o, interruption);
-            }};
+            },
+            &o->limits};
 }
 
 }  // namespace still::command

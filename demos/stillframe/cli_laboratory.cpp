@@ -25,6 +25,7 @@ void addLaboratoryOptions(CLI::App& command, Options& o) {
         ->type_name("DIR");
     command.add_flag("--json", o.json, "Print the results as one JSON object");
     addQuiet(command, o.quiet);
+    addLimits(command, o.limits);
 }
 
 }  // namespace
@@ -68,9 +69,11 @@ Subcommand declareAtlas(CLI::App& app) {
         ->check(CLI::Range(1, 65536))
         ->type_name("N");
     addSize(*atlas, o->resolution, "Default 320x180");
-    return {atlas, [o](Interruption& interruption) {
+    return {atlas,
+            [o](Interruption& interruption) {
                 return still::command::atlas(*o, interruption).map([] { return ExitCode::ok; });
-            }};
+            },
+            &o->limits};
 }
 
 Subcommand declareChart(CLI::App& app) {
@@ -98,9 +101,11 @@ Subcommand declareChart(CLI::App& app) {
                      "one's get four times as many")
         ->check(CLI::Range(1, 16384))
         ->type_name("N");
-    return {chart, [o](Interruption& interruption) {
+    return {chart,
+            [o](Interruption& interruption) {
                 return still::command::chart(*o, interruption).map([] { return ExitCode::ok; });
-            }};
+            },
+            &o->limits};
 }
 
 Subcommand declareBench(CLI::App& app) {
@@ -131,9 +136,11 @@ Subcommand declareBench(CLI::App& app) {
     bench->add_option("--simd", o->simd, "Instruction set, default the best")->type_name("TARGET");
     bench->add_flag("--json", o->json, "Print the results as one JSON object");
     addQuiet(*bench, o->quiet);
-    return {bench, [o](Interruption&) {
-                return still::command::bench(*o).map([] { return ExitCode::ok; });
-            }};
+    addLimits(*bench, o->limits);
+    return {
+        bench,
+        [o](Interruption&) { return still::command::bench(*o).map([] { return ExitCode::ok; }); },
+        &o->limits};
 }
 
 }  // namespace still::command

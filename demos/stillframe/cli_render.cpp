@@ -145,6 +145,7 @@ void addRunOptions(CLI::App& render, RenderOptions& o) {
     render.add_flag("--json", o.json,
                     "Print times, memory, hashes and comparisons as one JSON object");
     addQuiet(render, o.quiet);
+    addLimits(render, o.limits);
     render.add_flag("--watch", o.watch,
                     "Render again when a file of the scene changes, until Ctrl-C");
 }
@@ -166,7 +167,8 @@ Subcommand declareRender(CLI::App& app) {
     addRunOptions(*render, *o);
     render->footer("Settings of --taa:\n" + taaSettingsLines());
     return {render,
-            [o](Interruption& interruption) { return still::command::render(*o, interruption); }};
+            [o](Interruption& interruption) { return still::command::render(*o, interruption); },
+            &o->limits};
 }
 
 Subcommand declareInfo(CLI::App& app) {
@@ -179,9 +181,11 @@ Subcommand declareInfo(CLI::App& app) {
     info->add_flag("--no-cache", o->no_cache, "Read OBJ files anew, see render");
     info->add_flag("--json", o->json, "As one JSON object");
     addQuiet(*info, o->quiet);
-    return {info, [o](Interruption&) {
-                return still::command::info(*o).map([] { return ExitCode::ok; });
-            }};
+    addLimits(*info, o->limits);
+    return {
+        info,
+        [o](Interruption&) { return still::command::info(*o).map([] { return ExitCode::ok; }); },
+        &o->limits};
 }
 
 }  // namespace still::command

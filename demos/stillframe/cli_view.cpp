@@ -32,9 +32,12 @@ Subcommand declareView(CLI::App& app) {
                      "SDL_VIDEODRIVER=dummy needs no screen")
         ->type_name("FILE");
     view->add_flag("--no-cache", o.no_cache, "Read OBJ files anew, see stillframe render --help");
-    return {view, [options](Interruption& interruption) {
+    addLimits(*view, o.limits);
+    return {view,
+            [options](Interruption& interruption) {
                 return viewer::view(*options, interruption).map([] { return ExitCode::ok; });
-            }};
+            },
+            &options->limits};
 }
 
 }  // namespace still::command

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "demos/stillframe/interruption.h"
+#include "demos/stillframe/limits.h"
 #include "demos/stillframe/outcome.h"
 
 namespace still::command {
@@ -17,6 +18,7 @@ struct GoldenOptions {
     std::string simd;    ///< empty: the best
     bool json = false;
     bool quiet = false;
+    Limits limits;
 };
 
 /// Renders the cases and writes NAME.hashes and NAME.FRAME.png into the folder; files that are

@@ -61,6 +61,8 @@ Outcome<std::unique_ptr<GoldenRun>> openGolden(const GoldenOptions& options) {
     run->options.threads = options.threads;
     run->options.builtin = builtinScene;
     run->options.cache_folder = usersCacheFolder();
+    run->options.allow_outside = options.limits.allow_outside;
+    run->options.max_memory_bytes = options.limits.max_memory_bytes;
     if (!options.quiet) {
         run->options.warn = [&warnings = run->warnings](const std::string& warning) {
             if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {

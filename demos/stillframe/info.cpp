@@ -302,7 +302,7 @@ std::string infoLines(const std::string& name, const Scene& scene, const SceneIn
 
 Outcome<void> info(const InfoOptions& options) {
     const auto cache = options.no_cache ? std::filesystem::path() : usersCacheFolder();
-    const auto scene = openScene(options.scene, cache);
+    const auto scene = openScene(options.scene, loadOptions(options.limits, cache));
     if (!scene) {
         return tl::make_unexpected(scene.error());
     }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "demos/stillframe/limits.h"
 #include "demos/stillframe/outcome.h"
 
 namespace still::command {
@@ -12,6 +13,7 @@ struct InfoOptions {
     bool json = false;
     bool quiet = false;
     bool no_cache = false;
+    Limits limits;
 };
 
 /// Loads the scene and prints.

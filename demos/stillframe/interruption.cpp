@@ -1,6 +1,7 @@
 #include "demos/stillframe/interruption.h"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <system_error>
 
@@ -55,6 +56,14 @@ void Interruption::wait() {
     std::signal(signal, SIG_DFL);
     pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
     raise(signal);
+}
+
+void Interruption::endProcess(const std::string& line, int code) {
+    mutex_.lock();  // as above
+    cleanUp();
+    // Nothing could be done about an error.
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), line.size());
+    _exit(code);
 }
 
 void Interruption::cleanUp() {

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
 #include <thread>
 
 namespace still::command {
@@ -30,6 +31,10 @@ class Interruption {
     /// A child process to kill when interrupted; nothing forgets it.
     void setChild(std::optional<pid_t> child);
 
+    /// Ends the process as a signal would, but with a line for standard error and an exit code.
+    /// Takes no memory.
+    [[noreturn]] void endProcess(const std::string& line, int code);
+
     /// The signals this object waits for, as they are to be unblocked in a child process.
     const sigset_t& signals() const { return signals_; }
 
@@ -39,7 +44,7 @@ class Interruption {
 
     sigset_t signals_{};
     std::atomic<bool> finished_ = false;
-    std::mutex mutex_;
+    std::recursive_mutex mutex_;  ///< endProcess() may be called from within addFile()
     std::set<std::filesystem::path> files_;
     std::optional<pid_t> child_;
     std::thread waiter_;

@@ -155,7 +155,9 @@ Outcome<void> readCameras(Job& job) {
 
 Outcome<void> readFiles(Job& job) {
     const auto cache = job.options.no_cache ? std::filesystem::path() : usersCacheFolder();
-    return store(openScene(job.scene_name, cache, job.options.lights), job.scene)
+    return store(openScene(job.scene_name, loadOptions(job.options.limits, cache),
+                           job.options.lights),
+                 job.scene)
         .map([&] { printWarnings(job.scene.warnings, job.options.quiet); })
         .and_then([&] { return readCameras(job); });
 }

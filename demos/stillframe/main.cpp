@@ -1,10 +1,11 @@
 // The command line: finds the subcommand and gives its options to the function that does the work.
 
 #include <algorithm>
-#include <new>
+#include <exception>
 #include <vector>
 
 #include "demos/stillframe/cli.h"
+#include "demos/stillframe/memory_limit.h"
 #include "demos/stillframe/report.h"
 
 namespace still::command {
@@ -43,6 +44,9 @@ int run(int argc, char** argv) {
         std::find_if(subcommands.begin(), subcommands.end(),
                      [](const Subcommand& subcommand) { return subcommand.app->parsed(); });
     Interruption interruption;
+    const MemoryLimit memory(
+        chosen->limits != nullptr ? chosen->limits->max_memory_bytes : machineMemoryBytes(),
+        interruption);
     const Outcome<ExitCode> outcome = chosen->run(interruption);
     return outcome ? int(*outcome) : report(outcome.error());
 }
@@ -53,7 +57,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     try {
         return still::command::run(argc, argv);
-    } catch (const std::bad_alloc&) {
-        return still::command::report({still::command::ExitCode::file_error, "not enough memory"});
+    } catch (const std::exception& exception) {
+        return still::command::report(still::command::failureOf(exception));
     }
 }

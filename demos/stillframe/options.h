@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "demos/stillframe/camera_options.h"
+#include "demos/stillframe/limits.h"
 #include "demos/stillframe/outcome.h"
 #include "engine/anti_aliasing.h"
 #include "engine/frame_loop.h"
@@ -49,6 +50,7 @@ struct RenderOptions {
     bool json = false;
     bool quiet = false;
     bool watch = false;
+    Limits limits;
 };
 
 struct CompareOptions {

@@ -13,6 +13,7 @@
 #include "demos/stillframe/png.h"
 #include "demos/stillframe/progress.h"
 #include "demos/stillframe/report.h"
+#include "demos/stillframe/scene_source.h"
 #include "demos/stillframe/watch.h"
 #include "engine/hash.h"
 #include "engine/image_file.h"
@@ -155,6 +156,11 @@ Outcome<RenderReport> renderScene(const RenderOptions& options, const std::strin
     }
     if (options.json) {
         job.settings.clock_ms = nowMs;
+    }
+    const int loops = options.no_background ? 2 : 1;
+    if (const auto fits = checkFrameMemory(scene, job.scene, job.settings, options.limits, loops);
+        !fits) {
+        return tl::make_unexpected(fits.error());
     }
     const SinkSettings sink_settings{job.sink,   job.name,           job.start,
                                      job.frames, job.settings.width, job.settings.height,

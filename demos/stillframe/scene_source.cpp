@@ -7,6 +7,7 @@
 #include "demos/scenes/builtin.h"
 #include "demos/stillframe/output_file.h"
 #include "engine/load.h"
+#include "engine/memory_need.h"
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -19,7 +20,7 @@ namespace {
 constexpr std::string_view kBuiltin = "builtin:";
 constexpr const char* kStandardInput = "standard input";
 
-Outcome<Scene> sceneFromStandardInput() {
+Outcome<Scene> sceneFromStandardInput(const LoadOptions& options) {
     std::string text;
     std::array<char, 65536> buffer;
     while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), stdin)) {
@@ -28,15 +29,15 @@ Outcome<Scene> sceneFromStandardInput() {
     if (std::ferror(stdin) != 0) {
         return fileError(systemMessage(kStandardInput, "cannot read"));
     }
-    return fromResult(loadSceneText(std::move(text), kStandardInput));
+    return fromResult(loadSceneText(std::move(text), kStandardInput, options));
 }
 
-Outcome<Scene> sceneOf(const std::string& name, const std::filesystem::path& cache_folder) {
+Outcome<Scene> sceneOf(const std::string& name, const LoadOptions& options) {
     if (name == "-") {
-        return sceneFromStandardInput();
+        return sceneFromStandardInput(options);
     }
     if (!name.starts_with(kBuiltin)) {
-        Outcome<Scene> scene = fromResult(loadScene(name, cache_folder));
+        Outcome<Scene> scene = fromResult(loadScene(name, options));
 #if defined(__GLIBC__)
         malloc_trim(0);  // gives back what the loader has freed: 22 MB after Sponza, in 2 ms
 #endif
@@ -57,9 +58,9 @@ std::string modelName(const std::string& scene) {
                                        : std::filesystem::path(scene).stem().string();
 }
 
-Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder,
+Outcome<Scene> openScene(const std::string& name, const LoadOptions& options,
                          const std::string& lights) {
-    return sceneOf(name, cache_folder).and_then([&](Scene scene) -> Outcome<Scene> {
+    return sceneOf(name, options).and_then([&](Scene scene) -> Outcome<Scene> {
         if (!lights.empty()) {
             if (const auto loaded = fromResult(loadLights(lights, scene)); !loaded) {
                 return tl::make_unexpected(loaded.error());
@@ -67,6 +68,12 @@ Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& c
         }
         return scene;
     });
+}
+
+Outcome<void> checkFrameMemory(const std::string& name, const Scene& scene,
+                               const FrameSettings& settings, const Limits& limits, int loops) {
+    return fromResult(
+        still::checkFrameMemory(name, scene, settings, limits.max_memory_bytes, loops));
 }
 
 void printWarnings(const std::vector<std::string>& warnings, bool quiet) {

@@ -6,15 +6,20 @@
 #include <vector>
 
 #include "demos/stillframe/options.h"
+#include "engine/load.h"
 #include "engine/scene.h"
 
 namespace still::command {
 
 /// Opens FILE.obj, FILE.json, builtin:NAME or -, which is standard input with the text of either,
-/// with the help of a `cache_folder` if one is given (see loadScene), and lights it as the scene
-/// file `lights` says, if there is a name. Its warnings are the caller's to print.
-Outcome<Scene> openScene(const std::string& name, const std::filesystem::path& cache_folder = {},
+/// and lights it as the scene file `lights` says, if there is a name. Its warnings are the caller's
+/// to print.
+Outcome<Scene> openScene(const std::string& name, const LoadOptions& options = {},
                          const std::string& lights = {});
+
+/// Refuses frames that need more memory than is allowed, `loops` FrameLoops of them at once.
+Outcome<void> checkFrameMemory(const std::string& name, const Scene& scene,
+                               const FrameSettings& settings, const Limits& limits, int loops = 1);
 
 /// What {model} stands for: "courtyard" of builtin:courtyard, "a" of dir/a.obj, "stdin" of -.
 std::string modelName(const std::string& scene);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "demos/stillframe/memory_limit.h"
+
 extern char** environ;
 
 namespace still::command {
@@ -123,7 +125,10 @@ Outcome<VideoPipe> VideoPipe::start(const std::filesystem::path& target,
     Stream frames(fdopen(ends[1], "wb"));
     const SpawnSettings settings(ends[0], fileno(messages.get()), interruption.signals());
     pid_t pid = -1;
-    const int error = settings.run(pid, ffmpegArguments(target, width, height, fps));
+    const int error = [&] {
+        const MemoryLimitPause pause;
+        return settings.run(pid, ffmpegArguments(target, width, height, fps));
+    }();
     close(ends[0]);
     if (error == ENOENT) {
         return fileError(name.string() +

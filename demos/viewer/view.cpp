@@ -207,9 +207,9 @@ Outcome<ViewerSettings> settingsOf(const ViewOptions& options) {
                         options.tone_map == "reinhard" ? ToneMap::reinhard : ToneMap::none;
                     settings.lights = options.lights;
                     settings.keeps_fps = options.script.empty();
-                    if (!options.no_cache) {
-                        settings.cache_folder = command::usersCacheFolder();
-                    }
+                    settings.load = command::loadOptions(
+                        options.limits,
+                        options.no_cache ? std::filesystem::path() : command::usersCacheFolder());
                     return settings;
                 });
         });
@@ -232,12 +232,17 @@ Outcome<void> view(const ViewOptions& options, Interruption& interruption) {
     if (!settings || !steps) {
         return tl::make_unexpected(settings ? steps.error() : settings.error());
     }
-    Outcome<Scene> scene =
-        command::openScene(options.scene, settings->cache_folder, options.lights);
+    Outcome<Scene> scene = command::openScene(options.scene, settings->load, options.lights);
     if (!scene) {
         return tl::make_unexpected(scene.error());
     }
     command::printWarnings(scene->warnings);
+    const auto [width, height] = options.resolution;
+    if (auto fits = command::checkFrameMemory(options.scene, *scene,
+                                              {.width = width, .height = height}, options.limits);
+        !fits) {
+        return fits;
+    }
     Outcome<Window> window = Window::open(options.scene, options.resolution);
     if (!window) {
         return tl::make_unexpected(window.error());

@@ -19,6 +19,7 @@ struct ViewOptions {
     int threads = 0;     ///< 0: all cores
     std::string script;  ///< empty: people
     bool no_cache = false;
+    command::Limits limits;
 };
 
 /// Opens the window and stays until it is closed, or until the script has ended.

@@ -54,8 +54,7 @@ Viewer::Viewer(Scene scene, const std::string& name, const ViewerSettings& setti
 /// Opens a scene, or the same one `again`; when that fails, the old one stays.
 void Viewer::open(const std::string& name, bool again) {
     tried_ = name;
-    command::Outcome<Scene> scene =
-        command::openScene(name, settings_.cache_folder, settings_.lights);
+    command::Outcome<Scene> scene = command::openScene(name, settings_.load, settings_.lights);
     if (!scene) {
         desk_.say(scene.error().message, true);
         return;

@@ -1,7 +1,6 @@
 #pragma once
 // The viewer without its window: events in, pixels out.
 
-#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "demos/viewer/dynamic_resolution.h"
 #include "demos/viewer/file_watch.h"
 #include "demos/viewer/ui.h"
+#include "engine/load.h"
 
 namespace still::viewer {
 
@@ -19,8 +19,8 @@ struct ViewerSettings {
     inspect::Mode mode{};  ///< of the first pane
     ToneMap tone_map = ToneMap::none;
     SimdTarget simd = bestSimdTarget();
-    std::filesystem::path cache_folder{};  ///< see loadScene(); empty: none
-    std::string lights{};                  ///< see openScene(); of all scenes
+    LoadOptions load{};    ///< of all scenes
+    std::string lights{};  ///< see openScene(); of all scenes
     /// The frame rate is kept by measured times; else what is drawn depends on events alone.
     bool keeps_fps = true;
 };

@@ -6,11 +6,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <new>
+#include <string_view>
 #include <vector>
 
 #include "engine/det_math.h"
 #include "engine/internal/image_guard.h"
 #include "engine/internal/obj_text.h"
+#include "engine/memory_need.h"
 
 // Scalar code, and memory that is zero where a corrupt file makes the decoder read before it
 // writes: what a file decodes to must depend on nothing else.
@@ -83,6 +86,9 @@ tl::unexpected<Error> refuse(const std::string& name, const std::string& why) {
 
 tl::unexpected<Error> refuseAsDecoder(const std::string& name) {
     const char* reason = stbi_failure_reason();
+    if (reason != nullptr && std::string_view(reason) == "outofmem") {
+        throw std::bad_alloc();  // says nothing about the file
+    }
     return refuse(name, reason != nullptr ? reason : "unknown reason");
 }
 
@@ -196,13 +202,30 @@ Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::stri
     return decodeBytes(full.empty() ? bytes : full, name);
 }
 
-Result<Image<Rgba8>> loadImage(const std::filesystem::path& file) {
-    const Result<std::string> bytes = readFile(file);
-    if (!bytes) {
-        return tl::make_unexpected(bytes.error());
+Result<void> checkImageMemory(std::span<const uint8_t> bytes, const std::string& name,
+                              uint64_t max_memory_bytes) {
+    // Pixels as decoded and as kept, a texture with its mips, the first of them in double.
+    constexpr uint64_t kPixelBytes = 16;
+    int width = 0, height = 0, channels = 0;
+    if (bytes.size() > size_t(INT_MAX) ||
+        !stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels)) {
+        return {};
     }
-    return decodeImage({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()},
-                       shownPath(file));
+    const uint64_t pixels =
+        uint64_t(std::abs(int64_t(width))) * uint64_t(std::abs(int64_t(height)));
+    return checkMemory(name, pixels * kPixelBytes, max_memory_bytes);
+}
+
+Result<Image<Rgba8>> loadImage(const std::filesystem::path& file, uint64_t max_memory_bytes) {
+    const Result<std::string> text = readFile(file);
+    if (!text) {
+        return tl::make_unexpected(text.error());
+    }
+    const std::span bytes{reinterpret_cast<const uint8_t*>(text->data()), text->size()};
+    const std::string name = shownPath(file);
+    return checkImageMemory(bytes, name, max_memory_bytes).and_then([&] {
+        return decodeImage(bytes, name);
+    });
 }
 
 }  // namespace still

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/internal/file_access.h"
 #include "engine/result.h"
 
 namespace still {
@@ -27,6 +28,15 @@ Input inspect(const std::filesystem::path& file);
 /// Answers a loader's questions about files and takes notes. May be used by several threads.
 class InputLog {
   public:
+    /// Every file may be read.
+    InputLog() = default;
+    /// Files that `file` may name.
+    InputLog(const LoadOptions& options, const std::filesystem::path& file)
+        : access_(options, file), max_memory_bytes_(options.max_memory_bytes) {}
+
+    const FileAccess& access() const { return access_; }
+    uint64_t maxMemoryBytes() const { return max_memory_bytes_; }
+
     bool isFile(const std::filesystem::path& file);
     /// readFile().
     Result<std::string> read(const std::filesystem::path& file);
@@ -41,6 +51,8 @@ class InputLog {
   private:
     void note(const std::filesystem::path& file, const Input& input);
 
+    FileAccess access_;
+    uint64_t max_memory_bytes_ = std::numeric_limits<uint64_t>::max();
     std::mutex mutex_;
     std::map<std::string, Input> inputs_;
 };

@@ -174,9 +174,10 @@ bool writeModel(const fs::path& file, const ModelOrigin& origin, const ObjModel&
 
 }  // namespace
 
-ModelCache::ModelCache(fs::path folder, const fs::path& obj) : folder_(std::move(folder)) {
+ModelCache::ModelCache(fs::path folder, const fs::path& obj, const FileAccess& access)
+    : folder_(std::move(folder)) {
     std::error_code error;
-    key_ = fs::absolute(obj, error).string() + '\n' + obj.string();
+    key_ = fs::absolute(obj, error).string() + '\n' + obj.string() + '\n' + access.key();
     file_ = folder_ / (hex(hashBytes(key_)) + kExtension);
 }
 

@@ -18,8 +18,9 @@ constexpr uint64_t kModelCacheBytes = uint64_t{2} << 30;
 /// The entry of one OBJ file. Several processes may use the same folder.
 class ModelCache {
   public:
-    /// `folder` is made when it is needed.
-    ModelCache(std::filesystem::path folder, const std::filesystem::path& obj);
+    /// `folder` is made when it is needed. What `access` permits is part of the entry's name.
+    ModelCache(std::filesystem::path folder, const std::filesystem::path& obj,
+               const FileAccess& access);
 
     /// The model, if it was stored by this very program and no file that it was made of, or that
     /// was looked for in vain, has changed since: contents are compared, not dates.

@@ -46,6 +46,7 @@ struct ImageFile {
     std::filesystem::path path;
     std::vector<size_t> builds{};
     std::optional<Error> error{};
+    bool memory_error = false;  ///< `error` is about memory
 };
 
 template <class Test>
@@ -114,19 +115,22 @@ void buildTexture(Build& build, ImageView<const Rgba8> image) {
     }
 }
 
-Result<Image<Rgba8>> readImage(const std::filesystem::path& file, InputLog& log) {
-    const Result<std::string> bytes = log.read(file);
-    if (!bytes) {
-        return tl::make_unexpected(bytes.error());
-    }
-    return decodeImage({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()},
-                       shownPath(file));
-}
-
 /// Decodes one image and makes all that is wanted of it. Runs on a worker, so it must not throw.
 void processImage(ImageFile& file, std::vector<Build>& builds, InputLog& log) noexcept {
     try {
-        const Result<Image<Rgba8>> image = readImage(file.path, log);
+        const std::string name = shownPath(file.path);
+        const Result<std::string> text = log.read(file.path);
+        if (!text) {
+            file.error = text.error();
+            return;
+        }
+        const std::span bytes{reinterpret_cast<const uint8_t*>(text->data()), text->size()};
+        if (const auto fits = checkImageMemory(bytes, name, log.maxMemoryBytes()); !fits) {
+            file.error = fits.error();
+            file.memory_error = true;
+            return;
+        }
+        const Result<Image<Rgba8>> image = decodeImage(bytes, name);
         if (!image) {
             file.error = image.error();
             return;
@@ -136,6 +140,7 @@ void processImage(ImageFile& file, std::vector<Build>& builds, InputLog& log) no
         }
     } catch (const std::exception&) {
         file.error = Error{shownPath(file.path) + ": not enough memory for this image"};
+        file.memory_error = true;
     }
 }
 
@@ -220,14 +225,19 @@ std::optional<std::filesystem::path> Planner::find(const MtlSource& source, cons
     }
     const std::filesystem::path folder = source.library.parent_path();
     const std::string bare(trimmed(std::string_view(name).substr(0, name.find(" -"))));
-    for (const std::filesystem::path& candidate :
-         {folder / name, folder / bare, folder / std::filesystem::path(bare).filename()}) {
-        if (log_.isFile(candidate)) {
-            return candidate.lexically_normal();
+    const std::string last = std::filesystem::path(bare).filename().string();
+    bool outside = false;
+    for (const std::string& candidate : {name, bare, last}) {
+        const bool permitted = log_.access().permits(folder, candidate);
+        outside |= !permitted;
+        if (permitted && log_.isFile(folder / candidate)) {
+            return (folder / candidate).lexically_normal();
         }
     }
     warnOnce(shownPath(source.library) + ": image " + shownText(name) +
-             ": no such file, the material does without");
+             (outside ? ": lies outside of the scene's folder, the material does without; " +
+                            std::string(FileAccess::kAdvice)
+                      : ": no such file, the material does without"));
     return std::nullopt;
 }
 
@@ -303,6 +313,9 @@ MaterialSet buildMaterials(std::span<const MtlSource> sources, InputLog& log,
     for (const ImageFile& image : planner.images) {
         if (image.error) {
             set.warnings.push_back(image.error->message);
+        }
+        if (image.memory_error && !set.memory_error) {
+            set.memory_error = image.error;
         }
     }
     collect(planner.builds, set);

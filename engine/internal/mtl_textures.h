@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,11 +25,12 @@ struct MaterialSet {
     std::vector<Texture> textures;
     std::vector<AlphaTexture> alpha_textures;
     std::vector<std::string> warnings;
+    std::optional<Error> memory_error;  ///< an image needs more than there is: nothing else counts
 };
 
 /// Reads each image once (by several threads) and builds each texture once per way of using it.
-/// Order and contents do not depend on the threads. Missing and broken images become warnings, and
-/// the materials do without.
+/// Order and contents do not depend on the threads. Missing and broken images, and those that
+/// must not be read, become warnings, and the materials do without.
 ///  - Alpha: map_d (its alpha channel where that is used, else its luminance), otherwise the alpha
 ///    channel of map_Kd; none when everything is opaque.
 ///  - Relief: `norm` is a normal map; `bump` is a height map when it is grey, else a normal map.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/load.h"
 #include "engine/result.h"
 #include "engine/scene.h"
 
@@ -28,14 +29,14 @@ struct ObjModel {
 /// Refused with an Error: a file that cannot be read, has no triangle, has a coordinate that is not
 /// finite (or beyond ±1e18), or a face with a vertex that does not exist. Everything else that is
 /// odd (missing libraries and images, unknown materials, broken texture coordinates or normals)
-/// becomes a warning and a usable model. With a `cache_folder` (see load.h), what stands there is
-/// taken instead when it is the same.
-Result<ObjModel> loadObj(const std::filesystem::path& file,
-                         const std::filesystem::path& cache_folder = {});
+/// becomes a warning and a usable model. What stands in `options.cache_folder` is taken instead
+/// when it is the same.
+Result<ObjModel> loadObj(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// The same from text that comes from nowhere in particular: `name` stands for it in messages, and
 /// what it names is looked for beside that.
-Result<ObjModel> parseObjModel(std::string text, const std::filesystem::path& name);
+Result<ObjModel> parseObjModel(std::string text, const std::filesystem::path& name,
+                               const LoadOptions& options = {});
 
 /// Moves the model's assets to the end of the scene's, with indices adjusted, and returns the
 /// number of its mesh. Adds no object.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/internal/file_access.h"
 #include "engine/internal/json.h"
 #include "engine/internal/json_tracks.h"
 #include "engine/internal/obj.h"
@@ -24,14 +25,18 @@ constexpr double kMinFovDeg = 0.1, kMaxFovDeg = 170;
 /// Reads one scene file: the tree's checks, then the files that it names.
 class SceneFileReader {
   public:
-    SceneFileReader(const std::filesystem::path& file, const std::filesystem::path& cache_folder,
+    SceneFileReader(const std::filesystem::path& file, const LoadOptions& options,
                     const JsonValue& tree)
         : folder_(file.parent_path()),
-          cache_folder_(cache_folder),
+          options_(options),
+          access_(options, file),
           report_{.file = shownPath(file), .error = {}, .warnings = {}},
           root_(tree, report_) {
         scene_.name = file.stem().string();
         scene_.lights = defaultLights();
+        if (options_.folder.empty()) {
+            options_.folder = folder_.empty() ? "." : folder_;  // of what its models name as well
+        }
     }
 
     Result<Scene> read();
@@ -51,11 +56,13 @@ class SceneFileReader {
     void readCuts(const JsonCursor& cursor);
     void chooseClipPlanes();
 
-    std::filesystem::path folder_, cache_folder_;
+    std::filesystem::path folder_;
+    LoadOptions options_;
+    FileAccess access_;
     JsonReport report_;
     JsonCursor root_;
     Scene scene_;
-    SceneMaterials materials_{folder_, scene_};
+    SceneMaterials materials_{folder_, access_, options_.max_memory_bytes, scene_};
     std::map<std::filesystem::path, ObjMaterials> obj_of_file_;
 };
 
@@ -78,12 +85,15 @@ ObjectTracks readTransform(const JsonCursor& cursor) {
 
 /// The OBJ's mesh and materials, loaded once; those of mesh 0 after an error.
 const ObjMaterials& SceneFileReader::objOf(const JsonCursor& obj) {
-    const std::filesystem::path file = folder_ / obj.text();
-    const auto [known, added] = obj_of_file_.try_emplace(file);
+    const std::string name = obj.text();
+    const auto [known, added] = obj_of_file_.try_emplace(folder_ / name);
     if (!added || report_.error) {
         return known->second;
     }
-    Result<ObjModel> model = loadObj(file, cache_folder_);
+    const std::filesystem::path& file = known->first;
+    Result<ObjModel> model = access_.find(folder_, name).and_then([&](const auto& found) {
+        return loadObj(found, options_);
+    });
     if (!model) {
         obj.refuse(model.error().message);
         return known->second;
@@ -171,9 +181,11 @@ void SceneFileReader::readObjects() {
 }
 
 void SceneFileReader::readCameraFile(const JsonCursor& file) {
-    const std::filesystem::path path = folder_ / file.text();
-    scene_.files.push_back(path.string());
-    Result<CameraFile> cameras = loadCameraFile(path);
+    const std::string name = file.text();
+    Result<CameraFile> cameras = access_.find(folder_, name).and_then([&](const auto& path) {
+        scene_.files.push_back(path.string());
+        return loadCameraFile(path);
+    });
     if (!cameras) {
         file.refuse(cameras.error().message);
         return;
@@ -331,13 +343,12 @@ Result<Scene> SceneFileReader::read() {
 
 }  // namespace
 
-Result<Scene> loadSceneFile(const std::filesystem::path& file,
-                            const std::filesystem::path& cache_folder) {
+Result<Scene> loadSceneFile(const std::filesystem::path& file, const LoadOptions& options) {
     const Result<JsonValue> tree = readJson(file);
     if (!tree) {
         return tl::make_unexpected(tree.error());
     }
-    return SceneFileReader(file, cache_folder, *tree).read().map([&](Scene scene) {
+    return SceneFileReader(file, options, *tree).read().map([&](Scene scene) {
         scene.files.push_back(file.string());
         return scene;
     });
@@ -353,9 +364,10 @@ Result<void> loadLights(const std::filesystem::path& file, Scene& scene) {
     });
 }
 
-Result<Scene> parseSceneFile(const std::string& text, const std::filesystem::path& name) {
+Result<Scene> parseSceneFile(const std::string& text, const std::filesystem::path& name,
+                             const LoadOptions& options) {
     return parseJson(text, name).and_then([&](const JsonValue& tree) {
-        return SceneFileReader(name, {}, tree).read();
+        return SceneFileReader(name, options, tree).read();
     });
 }
 

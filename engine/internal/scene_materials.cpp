@@ -13,13 +13,16 @@ template <class T, class Make>
 int32_t SceneMaterials::textureOf(const JsonCursor& name,
                                   std::map<std::filesystem::path, int32_t>& known,
                                   std::vector<T>& textures, Make&& make) {
-    const std::filesystem::path file = folder_ / name.text();
+    const std::string text = name.text();
+    const std::filesystem::path file = folder_ / text;
     const auto entry = known.find(file);
     if (entry != known.end()) {
         return entry->second;
     }
-    scene_.files.push_back(file.string());
-    const Result<Image<Rgba8>> image = loadImage(file);
+    const Result<Image<Rgba8>> image = access_.find(folder_, text).and_then([&](const auto& found) {
+        scene_.files.push_back(found.string());
+        return loadImage(found, max_memory_bytes_);
+    });
     if (!image) {
         name.refuse(image.error().message);
         return kNoTexture;

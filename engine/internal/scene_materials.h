@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/internal/file_access.h"
 #include "engine/internal/json.h"
 #include "engine/scene.h"
 
@@ -24,9 +25,13 @@ struct ObjMaterials {
 /// Adds to one scene what its file says about materials. Each image is read once per use.
 class SceneMaterials {
   public:
-    /// Images are looked for in `folder`. The scene must outlive this.
-    SceneMaterials(std::filesystem::path folder, Scene& scene)
-        : folder_(std::move(folder)), scene_(scene) {}
+    /// Images are looked for in `folder`. `access` and scene must outlive this.
+    SceneMaterials(std::filesystem::path folder, const FileAccess& access,
+                   uint64_t max_memory_bytes, Scene& scene)
+        : folder_(std::move(folder)),
+          access_(access),
+          max_memory_bytes_(max_memory_bytes),
+          scene_(scene) {}
 
     /// A shape's "material": sets that of the mesh's only part.
     void readOfShape(const JsonCursor& cursor, uint32_t mesh);
@@ -44,6 +49,8 @@ class SceneMaterials {
                       std::vector<T>& textures, Make&& make);
 
     std::filesystem::path folder_;
+    const FileAccess& access_;
+    uint64_t max_memory_bytes_;
     Scene& scene_;
     std::map<std::filesystem::path, int32_t> colours_, heights_;
     std::set<uint32_t> described_;  ///< materials that an OBJ's "materials" named

@@ -63,11 +63,11 @@ class CachedModel {
     }
 
     ObjModel load() const {
-        Result<ObjModel> model = loadObj(obj, cache_folder);
+        Result<ObjModel> model = loadObj(obj, {cache_folder});
         REQUIRE(model);
         return std::move(*model);
     }
-    ModelCache cache() const { return {cache_folder, obj}; }
+    ModelCache cache() const { return {cache_folder, obj, FileAccess({}, obj)}; }
     bool hit() const { return cache().load().has_value(); }
     std::string fresh() const { return bytesOf(*loadObj(obj)); }
     std::string entry() const { return textOf(cache().file()); }
@@ -104,7 +104,7 @@ TEST_CASE("model cache: what stands there is what loading takes", "[unit][engine
     REQUIRE(log.read(scene.obj));
     scene.cache().store(other, log);
     CHECK(bytesOf(scene.load()) == bytesOf(other));
-    const Result<Scene> loaded = loadScene(scene.obj, scene.cache_folder);
+    const Result<Scene> loaded = loadScene(scene.obj, {scene.cache_folder});
     REQUIRE(loaded);
     CHECK(loaded->warnings == other.warnings);
 }
@@ -172,8 +172,8 @@ TEST_CASE("model cache: the same file under another name is another model", "[un
     const CachedModel scene;
     scene.load();
     const fs::path detour = scene.folder.path() / "." / "model.obj";
-    CHECK(!ModelCache(scene.cache_folder, detour).load());
-    const Result<ObjModel> model = loadObj(detour, scene.cache_folder);
+    CHECK(!ModelCache(scene.cache_folder, detour, FileAccess({}, detour)).load());
+    const Result<ObjModel> model = loadObj(detour, {scene.cache_folder});
     REQUIRE(model);
     CHECK(model->warnings == loadObj(detour)->warnings);
 }
@@ -209,7 +209,7 @@ TEST_CASE("model cache: a folder that cannot be used costs time only", "[unit][e
     const std::string model = scene.fresh();
     const fs::path blocked = scene.folder.write("a file", "not a folder");
     for (const fs::path& folder : {blocked, blocked / "below", fs::path("/proc/none")}) {
-        const Result<ObjModel> loaded = loadObj(scene.obj, folder);
+        const Result<ObjModel> loaded = loadObj(scene.obj, {folder});
         REQUIRE(loaded);
         CHECK(bytesOf(*loaded) == model);
     }
@@ -224,8 +224,8 @@ TEST_CASE("model cache: small models, and files that are no models, are not kept
     const fs::path cache = folder.path() / "cache";
     const fs::path small = folder.write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const fs::path broken = folder.write("broken.obj", "f 1 2 3\n#" + std::string(2 << 20, 'x'));
-    REQUIRE(loadObj(small, cache));
-    const Result<ObjModel> failed = loadObj(broken, cache);
+    REQUIRE(loadObj(small, {cache}));
+    const Result<ObjModel> failed = loadObj(broken, {cache});
     REQUIRE(!failed);
     CHECK(failed.error().message == loadObj(broken).error().message);
     CHECK(!fs::exists(cache));
@@ -289,7 +289,7 @@ TEST_CASE("model cache: several may read and write the same model at once", "[un
         threads.emplace_back([&, t] {
             same[t] = 1;
             for (int i = 0; i < 8; ++i) {
-                const Result<ObjModel> loaded = loadObj(scene.obj, scene.cache_folder);
+                const Result<ObjModel> loaded = loadObj(scene.obj, {scene.cache_folder});
                 same[t] = same[t] != 0 && loaded && bytesOf(*loaded) == model;
                 std::error_code ignored;
                 fs::remove(scene.cache().file(), ignored);

@@ -22,7 +22,7 @@ const std::string kLying =
     "v 0 0 0\nv 1 0 0\nv 0 0 2\nv 0 -3 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 Scene sceneOf(const std::string& text) {
-    auto scene = loadSceneText(text, "standard input");
+    auto scene = loadSceneText(text, "standard input", {.allow_outside = true});
     REQUIRE(scene.has_value());
     return std::move(*scene);
 }
@@ -57,9 +57,11 @@ TEST_CASE("load: text is an OBJ, or a scene file when it begins with a brace", "
     CHECK(typed.triangleCount() == 4);
     CHECK(typed.camera.eye.keys[0].value == loaded->camera.eye.keys[0].value);
     CHECK(typed.name == "standard input");
-    const Scene described = sceneOf(" \n{\"obj\": \"" + file.string() + "\"}");
+    const std::string names_it = " \n{\"obj\": \"" + file.string() + "\"}";
+    const Scene described = sceneOf(names_it);
     CHECK(described.triangleCount() == 4);
     CHECK(described.automatic_light);
+    CHECK_FALSE(loadSceneText(names_it, "standard input"));  // not in the present folder
     const auto broken = loadSceneText("{\"obj\": 5}", "standard input");
     REQUIRE_FALSE(broken.has_value());
     CHECK(isOneLineAbout(broken.error().message, "standard input"));
