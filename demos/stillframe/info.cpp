@@ -9,6 +9,7 @@
 #include "demos/stillframe/json_report.h"
 #include "demos/stillframe/report.h"
 #include "demos/stillframe/scene_source.h"
+#include "engine/read_file.h"
 #include "engine/scene_work.h"
 
 namespace still::command {
@@ -283,7 +284,7 @@ std::string infoLines(const std::string& name, const Scene& scene, const SceneIn
     lines += line("camera", info.camera);
     std::string views;
     for (const NamedView& view : scene.views) {
-        views += (views.empty() ? "" : ", ") + view.name;
+        views += (views.empty() ? "" : ", ") + shownPath(view.name);
     }
     lines += line("views", views.empty() ? "none" : views);
     lines += changesLine(scene, info);

@@ -15,14 +15,38 @@
 #include "engine/internal/obj_text.h"
 #include "engine/memory_need.h"
 
+namespace {
+
+/// What the decoder may ask for at once on this thread. Files can make it ask for gigabytes that no
+/// image of their size has use for: by the length of a chunk, or by what a few bytes inflate to.
+struct Allowance {
+    size_t block_bytes = 0;
+    bool exceeded = false;
+};
+thread_local Allowance allowance;
+
+bool permitsBlock(size_t bytes) {
+    const bool permitted = bytes <= allowance.block_bytes;
+    allowance.exceeded |= !permitted;
+    return permitted;
+}
+void* allocateForDecoder(size_t bytes) {
+    return permitsBlock(bytes) ? std::calloc(1, bytes) : nullptr;
+}
+void* reallocateForDecoder(void* block, size_t bytes) {
+    return permitsBlock(bytes) ? std::realloc(block, bytes) : nullptr;
+}
+
+}  // namespace
+
 // Scalar code, and memory that is zero where a corrupt file makes the decoder read before it
 // writes: what a file decodes to must depend on nothing else.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
 #define STBI_NO_SIMD
-#define STBI_MALLOC(size) std::calloc(1, size)
-#define STBI_REALLOC(pointer, size) std::realloc(pointer, size)
+#define STBI_MALLOC(size) allocateForDecoder(size)
+#define STBI_REALLOC(pointer, size) reallocateForDecoder(pointer, size)
 #define STBI_FREE(pointer) std::free(pointer)
 #define STBI_MAX_DIMENSIONS 16384
 #if defined(__GNUC__)
@@ -84,7 +108,18 @@ tl::unexpected<Error> refuse(const std::string& name, const std::string& why) {
     return fail(name + ": not a readable image: " + why);
 }
 
+/// Of an image, or of what is not known yet to be one. The decoder doubles its buffers, and keeps
+/// 16 bytes of a pixel at most, in whole blocks of a JPEG.
+void setAllowance(size_t file_bytes, int64_t width, int64_t height) {
+    constexpr size_t kBlock = 64, kPixelBytes = 32, kSmall = size_t{1} << 20;
+    allowance = {.block_bytes = kSmall + 4 * file_bytes +
+                                kPixelBytes * (size_t(width) + kBlock) * (size_t(height) + kBlock)};
+}
+
 tl::unexpected<Error> refuseAsDecoder(const std::string& name) {
+    if (allowance.exceeded) {
+        return refuse(name, "asks for more memory than an image of its size needs");
+    }
     const char* reason = stbi_failure_reason();
     if (reason != nullptr && std::string_view(reason) == "outofmem") {
         throw std::bad_alloc();  // says nothing about the file
@@ -183,6 +218,7 @@ Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::stri
     }
     int width = 0, height = 0, channels = 0;
     const int length = int(bytes.size());
+    setAllowance(bytes.size(), 0, 0);
     if (!stbi_info_from_memory(bytes.data(), length, &width, &height, &channels)) {
         return refuseAsDecoder(name);
     }
@@ -195,6 +231,7 @@ Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::stri
                                 " a side and at most " + std::to_string(kMaxImagePixels >> 20) +
                                 " Mpixel");
     }
+    setAllowance(bytes.size(), wide, high);
     if (stbi_is_hdr_from_memory(bytes.data(), length)) {
         return decodeHdr(bytes, name);
     }
@@ -207,6 +244,7 @@ Result<void> checkImageMemory(std::span<const uint8_t> bytes, const std::string&
     // Pixels as decoded and as kept, a texture with its mips, the first of them in double.
     constexpr uint64_t kPixelBytes = 16;
     int width = 0, height = 0, channels = 0;
+    setAllowance(bytes.size(), 0, 0);
     if (bytes.size() > size_t(INT_MAX) ||
         !stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels)) {
         return {};

@@ -293,6 +293,11 @@ TEST_CASE("limits: names of files and scenes are never run, nor taken for option
         CHECK((filesIn(folder.path()).size() > before.size()) == !numbered);
     }
     CHECK(shell(folder.path(), "stillframe info " + scene).code == 0);
+    folder.write("red.json", R"({"objects": [{"shape": "box"}], "views": [
+        {"name": "a\u001b[31m\nb", "eye": [0, 0, 5], "target": [0, 0, 0]}]})");
+    const Ran info = shell(folder.path(), "stillframe info red.json");
+    CHECK(has(info.out, "a?[31m?b"));
+    CHECK_FALSE(has(info.out, "\x1B"));
     for (const std::string& name : filesIn(folder.path())) {
         CHECK(name != "ran");
     }

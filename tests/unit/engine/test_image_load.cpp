@@ -30,6 +30,35 @@ bool samePixels(const Image<Rgba8>& a, const Image<Rgba8>& b) {
     return true;
 }
 
+std::string bigEndian(uint32_t value) {
+    return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+}
+
+/// A PNG of one pixel whose IDAT says that it has `length` bytes. Checksums are not looked at.
+std::string pngOfOnePixel(uint32_t length, const std::string& data) {
+    const std::string header = bigEndian(1) + bigEndian(1) + std::string("\x08\x02\0\0\0", 5);
+    return "\x89PNG\r\n\x1A\n" + bigEndian(13) + "IHDR" + header + "crc." + bigEndian(length) +
+           "IDAT" + data + "crc." + bigEndian(0) + "IEND" + "crc.";
+}
+
+/// A zlib stream of 1 + 258 · `repeats` zeros, by the fixed codes of RFC 1951, 3.2.6.
+std::string deflatedZeros(int repeats) {
+    std::string bits = "110" + std::string("00110000");
+    for (int i = 0; i < repeats; ++i) {
+        bits += "1100010100000";  // 258 bytes from 1 back
+    }
+    bits += "0000000";
+    std::string bytes = "\x78\x01" + std::string((bits.size() + 7) / 8, '\0');
+    for (size_t i = 0; i < bits.size(); ++i) {
+        bytes[2 + i / 8] = char(uint8_t(bytes[2 + i / 8]) | (bits[i] - '0') << i % 8);
+    }
+    return bytes;
+}
+
+Result<Image<Rgba8>> decoded(const std::string& bytes) {
+    return decodeImage({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, "x.png");
+}
+
 /// Loads, or gives the reason, which must be one line with the file's name.
 void loadsOrExplains(const std::filesystem::path& file) {
     INFO(file);
@@ -117,6 +146,22 @@ TEST_CASE("image: sizes beyond the limits are refused before decoding", "[unit][
     const Result<Image<Rgba8>> wide = loadImage(folder.write("wide.ppm", ppm(16384, 1, 7)));
     REQUIRE(wide);
     CHECK(wide->width() == 16384);
+}
+
+TEST_CASE("image: a file that asks for gigabytes its size has no use for is refused",
+          "[unit][engine]") {
+    const std::string pixel = deflatedZeros(1);
+    REQUIRE(decoded(pngOfOnePixel(uint32_t(pixel.size()), pixel)));
+    constexpr const char* kReason = "x.png: not a readable image: asks for more memory than";
+    for (const uint32_t length : {uint32_t{1} << 30, uint32_t{3} << 29}) {
+        const auto image = decoded(pngOfOnePixel(length, pixel));
+        REQUIRE_FALSE(image);
+        CHECK(image.error().message.starts_with(kReason));
+    }
+    const std::string bomb = deflatedZeros(40000);  // 65 KB, 10 MB
+    const auto image = decoded(pngOfOnePixel(uint32_t(bomb.size()), bomb));
+    REQUIRE_FALSE(image);
+    CHECK(image.error().message.starts_with(kReason));
 }
 
 TEST_CASE("image: opaque formats get alpha 255", "[unit][engine]") {
