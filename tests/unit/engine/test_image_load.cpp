@@ -41,14 +41,15 @@ std::string pngOfOnePixel(uint32_t length, const std::string& data) {
            "IDAT" + data + "crc." + bigEndian(0) + "IEND" + "crc.";
 }
 
-/// A zlib stream of 1 + 258 · `repeats` zeros, by the fixed codes of RFC 1951, 3.2.6.
+/// A zlib stream of 1 + 258 · `repeats` zeros, by the fixed codes of RFC 1951, 3.2.6, with a
+/// checksum that is not looked at.
 std::string deflatedZeros(int repeats) {
     std::string bits = "110" + std::string("00110000");
     for (int i = 0; i < repeats; ++i) {
         bits += "1100010100000";  // 258 bytes from 1 back
     }
     bits += "0000000";
-    std::string bytes = "\x78\x01" + std::string((bits.size() + 7) / 8, '\0');
+    std::string bytes = "\x78\x01" + std::string((bits.size() + 7) / 8 + 4, '\0');
     for (size_t i = 0; i < bits.size(); ++i) {
         bytes[2 + i / 8] = char(uint8_t(bytes[2 + i / 8]) | (bits[i] - '0') << i % 8);
     }
