@@ -75,9 +75,13 @@ enum class Extent {
 
 std::vector<Configuration> configurations(Extent extent) {
     if (extent == Extent::few) {
-        return {{SimdTarget::scalar, Schedule::serial, 1},
-                {bestSimdTarget(), Schedule::pooled, 2},
-                {bestSimdTarget(), Schedule::shuffled, 1, Shading::forward}};
+        std::vector<Configuration> list{
+            {SimdTarget::scalar, Schedule::serial, 1},
+            {bestSimdTarget(), Schedule::shuffled, 1, Shading::forward}};
+        if (bestSimdTarget() != SimdTarget::scalar) {
+            list.push_back({bestSimdTarget(), Schedule::pooled, 2});
+        }
+        return list;
     }
     std::vector<Configuration> list;
     for (SimdTarget simd : availableSimdTargets()) {

@@ -24,6 +24,9 @@ describe_native() {
     program=tests/determinism/determinism
     compiler="${compiler/gcc/g++-}" compiler="${compiler/clang/clang++-}"
     packages=("${compiler/clang++/clang}")
+    if [ "$compiler" = clang++-19 ]; then
+        werror=OFF # Debian's libstdc++ uses what it deprecates itself
+    fi
     case "$level" in
         O0) # with assertions; of the kernels those for AVX2 stand for all
             flags='' optimised='-O0'
@@ -67,7 +70,7 @@ describe_windows() {
     case "$name" in
         *-gcc) compiler=x86_64-w64-mingw32-g++-posix flags='-msse4.2 -maes -mpclmul' ;;
         *-clang)
-            compiler=clang++-19 flags='--target=x86_64-w64-mingw32 -march=x86-64-v3 -maes -mpclmul'
+            compiler=clang++-19 werror=OFF flags='--target=x86_64-w64-mingw32 -march=x86-64-v3 -maes -mpclmul'
             args+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld)
             packages+=(clang-19 lld-19)
             ;;
@@ -88,7 +91,7 @@ describe_wasm() {
 }
 
 describe() {
-    name="$1" simd=ON flags='' optimised='-O2 -DNDEBUG' runner=() configure=(cmake)
+    name="$1" simd=ON werror=ON flags='' optimised='-O2 -DNDEBUG' runner=() configure=(cmake)
     case "$name" in
         gcc12-* | clang1?-*) describe_native ;;
         i686) describe_foreign i686-linux-gnu '32-bit x86' '' OFF '-msse2 -mfpmath=sse' ;;
@@ -150,7 +153,7 @@ build() {
     fi
     if ! { "${configure[@]}" -S "$root/$source" -B "$folder" -G Ninja "${args[@]}" \
         -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS_RELEASE=$optimised" "-DCMAKE_CXX_FLAGS=$flags" \
-        -DSTILL_SIMD="$simd" -DSTILL_WERROR=ON &&
+        -DSTILL_SIMD="$simd" -DSTILL_WERROR="$werror" &&
         cmake --build "$folder" --target determinism ${STILL_JOBS:+-j "$STILL_JOBS"}; } \
         >"$log" 2>&1; then
         tail -n 100 "$log" >&2
