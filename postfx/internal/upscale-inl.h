@@ -483,7 +483,11 @@ HWY_ATTR void upscaleTile(const upscale::Job& job, const TileRect& tile, bool su
                               .x = tile.x0 + g * kHalves,
                               .y = y,
                               .i = g * kHalves,
-                              .across = columns.most};
+                              .across = columns.most,
+                              .y0 = 0,
+                              .y1 = 0,
+                              .offset_y = {},
+                              .wanted = {}};
             if (ask(job, y, sums_valid, block)) {
                 gatherBlock(job, block, rows[y & 1][g]);
             }

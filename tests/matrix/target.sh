@@ -99,7 +99,7 @@ describe() {
             describe_foreign i686-linux-gnu '32-bit x86' '' ON '-msse4.2 -maes -mpclmul -mfpmath=sse'
             ;;
         aarch64) describe_foreign aarch64-linux-gnu 'AArch64' qemu-aarch64 ON '' ;;
-        arm) describe_foreign arm-linux-gnueabihf '32-bit ARM' qemu-arm ON '-mfpu=neon-vfpv4' ;;
+        arm) describe_foreign arm-linux-gnueabihf '32-bit ARM' qemu-arm ON '-mfpu=neon-vfpv4 -mfp16-format=ieee' ;;
         riscv64) describe_foreign riscv64-linux-gnu 'RISC-V 64' qemu-riscv64 OFF '' ;;
         ppc64le) describe_foreign powerpc64le-linux-gnu 'PowerPC 64, little-endian' qemu-ppc64le OFF '' ;;
         s390x) describe_foreign s390x-linux-gnu 's390x, big-endian' qemu-s390x OFF '' ;;
@@ -147,6 +147,8 @@ build() {
     done
     if command -v ccache >/dev/null; then
         args+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+        # Without these it keeps nothing that uses a precompiled header.
+        export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros"
     fi
     if [ "${configure[0]}" = cmake ]; then
         args+=("-DCMAKE_CXX_COMPILER=$compiler")
