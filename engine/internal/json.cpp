@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/internal/obj_text.h"
+#include "engine/memory_need.h"
 
 namespace still {
 namespace {
@@ -36,7 +37,8 @@ std::string detailOf(std::string_view message) {
 /// Receives the parser's events and builds the tree; false stops the parser.
 class TreeBuilder {
   public:
-    explicit TreeBuilder(std::string_view text) : text_(text) {}
+    TreeBuilder(std::string_view text, uint64_t max_memory_bytes)
+        : text_(text), max_memory_bytes_(max_memory_bytes) {}
 
     bool null() { return add({}); }
     bool boolean(bool value) { return add({.type = JsonValue::Type::boolean, .boolean = value}); }
@@ -79,6 +81,12 @@ class TreeBuilder {
   private:
     bool number(double value) { return add({.type = JsonValue::Type::number, .number = value}); }
     bool add(JsonValue value) {
+        constexpr uint64_t kTimes = 4;  // arrays that grow stand beside their copies, and cursors
+        if (++values_ > max_memory_bytes_ / (kTimes * sizeof(JsonValue))) {
+            error_ = "its values need more than the " + bytesText(max_memory_bytes_) +
+                     " of memory that are allowed (--max-memory)";
+            return false;
+        }
         if (open_.empty()) {
             root_ = std::move(value);
         } else if (open_.back().type == JsonValue::Type::array) {
@@ -103,6 +111,7 @@ class TreeBuilder {
     }
 
     std::string_view text_;
+    uint64_t max_memory_bytes_, values_ = 0;
     JsonValue root_;
     std::vector<JsonValue> open_;
     std::string error_;
@@ -151,13 +160,14 @@ const JsonValue kNothing{};
 
 }  // namespace
 
-Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path& name) {
+Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path& name,
+                            uint64_t max_memory_bytes) {
     // The parser's own exceptions go to parse_error(); this catches what is left (memory).
     try {
         if (text.size() > kMaxBytes) {
             return fail(shownPath(name) + ": too large, expected at most 256 MiB");
         }
-        TreeBuilder builder(text);
+        TreeBuilder builder(text, max_memory_bytes);
         if (!nlohmann::json::sax_parse(text, &builder)) {
             return fail(shownPath(name) + builder.error());
         }
@@ -167,8 +177,9 @@ Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path
     }
 }
 
-Result<JsonValue> readJson(const std::filesystem::path& file) {
-    return readFile(file).and_then([&](const std::string& text) { return parseJson(text, file); });
+Result<JsonValue> readJson(const std::filesystem::path& file, uint64_t max_memory_bytes) {
+    return readFile(file).and_then(
+        [&](const std::string& text) { return parseJson(text, file, max_memory_bytes); });
 }
 
 void JsonCursor::refuse(std::string_view message) const {

@@ -3,9 +3,11 @@
 // reads it with checks. The first error is kept and everything after it reads as defaults: callers
 // read a whole file straight through and ask once at the end.
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,10 +30,12 @@ struct JsonValue {
 
 /// Reads and parses a file. Errors: "FILE: cannot read", "FILE:LINE:COLUMN: …". Refuses files over
 /// 256 MiB, nesting deeper than 32, numbers that overflow a double, repeated keys, and
-/// objects of more than 1000 keys.
-Result<JsonValue> readJson(const std::filesystem::path& file);
+/// objects of more than 1000 keys, and more values than fit in the memory that is allowed.
+Result<JsonValue> readJson(const std::filesystem::path& file,
+                           uint64_t max_memory_bytes = std::numeric_limits<uint64_t>::max());
 /// The same of text that `name` stands for in messages.
-Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path& name);
+Result<JsonValue> parseJson(const std::string& text, const std::filesystem::path& name,
+                            uint64_t max_memory_bytes = std::numeric_limits<uint64_t>::max());
 
 /// What went wrong while a tree was read.
 struct JsonReport {

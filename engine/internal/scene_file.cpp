@@ -344,7 +344,7 @@ Result<Scene> SceneFileReader::read() {
 }  // namespace
 
 Result<Scene> loadSceneFile(const std::filesystem::path& file, const LoadOptions& options) {
-    const Result<JsonValue> tree = readJson(file);
+    const Result<JsonValue> tree = readJson(file, options.max_memory_bytes);
     if (!tree) {
         return tl::make_unexpected(tree.error());
     }
@@ -366,7 +366,7 @@ Result<void> loadLights(const std::filesystem::path& file, Scene& scene) {
 
 Result<Scene> parseSceneFile(const std::string& text, const std::filesystem::path& name,
                              const LoadOptions& options) {
-    return parseJson(text, name).and_then([&](const JsonValue& tree) {
+    return parseJson(text, name, options.max_memory_bytes).and_then([&](const JsonValue& tree) {
         return SceneFileReader(name, options, tree).read();
     });
 }
