@@ -13,7 +13,8 @@ hn::Vec<hn::RebindToSigned<D>> roundLanes(D d, V v) {
 }
 
 // Quotients and roots are rounded once, as IEEE wants it. 32-bit NEON has neither of both, and
-// Highway estimates them there: lane by lane the processor has them after all.
+// Highway estimates them there: lane by lane the processor has them after all. Doubles it has not
+// even as lanes.
 #if HWY_ARCH_ARM_V7
 
 template <class V>
@@ -37,6 +38,9 @@ HWY_INLINE V squareRoot(V v) {
     }
     return hn::Load(d, x);
 }
+/// Pairs of floats as one lane each, to be moved about.
+template <class D>
+using PairsOf = hn::Repartition<uint64_t, D>;
 
 #else
 
@@ -48,6 +52,8 @@ template <class V>
 HWY_INLINE V squareRoot(V v) {
     return hn::Sqrt(v);
 }
+template <class D>
+using PairsOf = hn::RepartitionToWide<D>;
 
 #endif
 

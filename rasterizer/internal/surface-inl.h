@@ -80,7 +80,7 @@ HWY_INLINE Quad loadQuads(const float* words, const int32_t* at) {
     return {{splat(w[0]), splat(w[1]), splat(w[2]), splat(w[3])}};
 #else
     const FTag d;
-    const hn::RepartitionToWide<FTag> d64;
+    const PairsOf<FTag> d64;
     const FVec row[4] = {everyFourth(d, words, at), everyFourth(d, words, at + 1),
                          everyFourth(d, words, at + 2), everyFourth(d, words, at + 3)};
     const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, row[0], row[1]));
