@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <utility>
 
 #include "postfx/internal/lab_job.h"
 #include "postfx/internal/lab_kernels.h"
@@ -10,11 +11,12 @@
 #include "postfx/internal/lab_presets.h"
 #include "postfx/internal/lab_rules.h"
 #include "postfx/internal/lab_weights.h"
+#include "postfx/limits.h"
 
 namespace still {
 namespace {
 
-constexpr int kStoryRows = 4;
+constexpr int kStoryRows = 4, kShownRows = 16;
 
 using lab::HistoryIn;
 using lab::HistoryOut;
@@ -100,6 +102,7 @@ lab::Current currentPlanes(const GBuffer& gbuffer) {
 }  // namespace
 
 struct Laboratory::State {
+    int width = 0, height = 0;
     std::array<HistoryPlanes, 2> history;
     int written = 0;  ///< index of the planes written last
     std::array<Image<uint16_t>, 3> shown;
@@ -109,39 +112,49 @@ struct Laboratory::State {
     LaboratoryFrame frame;     ///< resolved last …
     bool had_history = false;  ///< … on top of a past
 
-    int width() const { return shown[0].width(); }
-    int height() const { return shown[0].height(); }
-
-    void adapt(const GBuffer& gbuffer, const TaaPolicy& wanted) {
+    void adapt(int new_width, int new_height, const TaaPolicy& wanted) {
         const TaaPolicy part = lab::resolvePart(wanted);
-        if (width() == gbuffer.width() && height() == gbuffer.height() && part == policy) {
+        if (width == new_width && height == new_height && part == policy) {
             return;
         }
+        width = new_width;
+        height = new_height;
         policy = part;
         has_history = false;
-        for (auto& plane : shown) {
-            plane.resize(gbuffer.width(), gbuffer.height());
+        if (!lab::kShowsOverPast) {
+            for (auto& plane : shown) {
+                plane.resize(width, height);
+            }
+            confidence.resize(width, height);
         }
-        confidence.resize(gbuffer.width(), gbuffer.height());
         for (HistoryPlanes& planes : history) {
-            planes.resize(gbuffer.width(), gbuffer.height(), policy);
+            planes.resize(width, height, policy);
         }
     }
+
+    /// The image over the past: two bytes a pixel from the first pixel of each row.
+    ImageView<uint16_t> placeOverPast(size_t c) {
+        uint32_t* const first = history[size_t(1 - written)].pointers().colour_w24[c];
+        return {reinterpret_cast<uint16_t*>(first), width, height,
+                history[0].colour_w24[c].view().stride * 2};
+    }
+    /// After all tiles.
+    void showOverPast(Workers& workers);
 
     /// On top of the planes `past`, into the others.
     ResolveJob makeJob(const GBuffer& gbuffer, int past) {
         ResolveJob job;
-        job.width = width();
-        job.height = height();
+        job.width = width;
+        job.height = height;
         job.stride = gbuffer.red.view().stride;
         job.history_stride = history[0].colour_w24[0].view().stride;
         job.now = currentPlanes(gbuffer);
         job.before = readOnly(history[size_t(past)].pointers());
         job.next = history[size_t(1 - past)].pointers();
         for (size_t c = 0; c < 3; ++c) {
-            job.shown[c] = shown[c].view().data;
+            job.shown[c] = lab::kShowsOverPast ? nullptr : shown[c].view().data;
         }
-        job.confidence = confidence.view().data;
+        job.confidence = lab::kShowsOverPast ? nullptr : confidence.view().data;
         job.policy = policy;
         job.constants = makeConstants(policy, frame);
         job.has_history = had_history;
@@ -150,14 +163,39 @@ struct Laboratory::State {
 
     TileRect rectOf(int tile, int tiles_x) const {
         const int x0 = tile % tiles_x * kTileSize, y0 = tile / tiles_x * kTileSize;
-        return {x0, y0, std::min(x0 + kTileSize, width()), std::min(y0 + kTileSize, height())};
+        return {x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)};
     }
 };
+
+void Laboratory::State::showOverPast(Workers& workers) {
+    const HistoryOut resolved = history[size_t(written)].pointers();
+    const ptrdiff_t stride = history[0].colour_w24[0].view().stride;
+    const ImageView<uint16_t> out[3] = {placeOverPast(0), placeOverPast(1), placeOverPast(2)};
+    workers.parallelFor(height, kShownRows, [&](int begin, int end, int) {
+        for (int y = begin; y < end; ++y) {
+            for (int x = 0; x < width; ++x) {
+                lab::Rgb colour_w24;
+                for (int c = 0; c < 3; ++c) {
+                    colour_w24.v[c] = int32_t(resolved.colour_w24[c][y * stride + x]);
+                }
+                const lab::Rgb linear = lab::linearOf(policy, lab::rounded(colour_w24));
+                for (int c = 0; c < 3; ++c) {
+                    out[c].row(y)[x] = uint16_t(linear.v[c]);
+                }
+            }
+        }
+    });
+}
 
 Laboratory::Laboratory() : state_(std::make_unique<State>()) {}
 Laboratory::~Laboratory() = default;
 Laboratory::Laboratory(Laboratory&&) noexcept = default;
 Laboratory& Laboratory::operator=(Laboratory&&) noexcept = default;
+
+void Laboratory::reserve(int width, int height, const TaaPolicy& policy) {
+    static_assert(sizeof(State) <= lab::kStateBytes);
+    state_->adapt(width, height, policy);
+}
 
 void Laboratory::resolve(const GBuffer& gbuffer, const LaboratoryFrame& frame,
                          const TaaPolicy& policy, SimdTarget simd, Workers& workers) {
@@ -165,7 +203,7 @@ void Laboratory::resolve(const GBuffer& gbuffer, const LaboratoryFrame& frame,
     assert(gbuffer.planes.motion);
     assert(!lab::needsNormal(policy) || gbuffer.planes.normal);
     State& s = *state_;
-    s.adapt(gbuffer, policy);
+    s.adapt(gbuffer.width(), gbuffer.height(), policy);
     s.frame = frame;
     s.had_history = s.has_history && !frame.reset;
     const ResolveJob job = s.makeJob(gbuffer, s.written);
@@ -177,11 +215,21 @@ void Laboratory::resolve(const GBuffer& gbuffer, const LaboratoryFrame& frame,
     });
     s.written = 1 - s.written;
     s.has_history = true;
+    if constexpr (lab::kShowsOverPast) {
+        s.showOverPast(workers);
+    }
 }
 
 ColourPlanes Laboratory::colour() const {
-    return {state_->shown[0].view(), state_->shown[1].view(), state_->shown[2].view()};
+    State& s = *state_;
+    if constexpr (lab::kShowsOverPast) {
+        return {s.placeOverPast(0), s.placeOverPast(1), s.placeOverPast(2)};
+    }
+    return {std::as_const(s.shown[0]).view(), std::as_const(s.shown[1]).view(),
+            std::as_const(s.shown[2]).view()};
 }
+
+#if !STILL_BOARD
 
 // The frame's past is in the planes that the next frame will write.
 PixelStory Laboratory::story(const GBuffer& gbuffer, int x, int y) const {
@@ -214,5 +262,7 @@ void Laboratory::rejections(const GBuffer& gbuffer, const RejectionTargets& out,
 ImageView<const uint8_t> Laboratory::confidence() const {
     return state_->confidence.view();
 }
+
+#endif
 
 }  // namespace still

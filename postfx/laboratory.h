@@ -24,12 +24,18 @@ struct LaboratoryFrame {
 };
 
 /// Owns the history. resolve() must be called once per frame, in order.
+/// In builds for boards the image takes the place of the past as soon as that is no longer read,
+/// and there are neither stories nor confidence().
 class Laboratory {
   public:
     Laboratory();
     ~Laboratory();
     Laboratory(Laboratory&&) noexcept;
     Laboratory& operator=(Laboratory&&) noexcept;
+
+    /// Makes the memory that resolve() needs for pictures of this size with this policy, as much as
+    /// laboratoryBytes() says; else the first resolve() makes it.
+    void reserve(int width, int height, const TaaPolicy& policy);
 
     /// `policy.method` is recursive. Needs the planes motion and, for tests of normals, normal. A
     /// changed size or policy resets by itself.

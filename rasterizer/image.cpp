@@ -10,7 +10,7 @@
 namespace still {
 namespace {
 
-constexpr std::align_val_t kCacheLine{64};
+constexpr std::align_val_t kCacheLine{kPlaneAlignment};
 
 #if defined(__linux__)
 /// From here on a plane is a mapping of its own. Planes of a frame are made one after the other, so

@@ -30,7 +30,21 @@ struct ImageView {
 
 /// Rows are padded to a multiple of this many elements, so a kernel may read and write whole
 /// vectors, and whole tiles, past the right edge. What stands in the padding is unspecified.
+#if STILL_BOARD
+constexpr int kRowPadding = 8;  // only SIMD kernels take whole vectors
+#else
 constexpr int kRowPadding = 64;
+#endif
+
+/// Elements that a row takes, its padding included.
+constexpr ptrdiff_t rowStride(int width) {
+    return (ptrdiff_t{width} + kRowPadding - 1) / kRowPadding * kRowPadding;
+}
+/// Elements that a plane takes.
+constexpr size_t planeElements(int width, int height) {
+    return size_t(rowStride(width)) * size_t(height) + 2 * kRowPadding;
+}
+constexpr size_t kPlaneAlignment = 64;  ///< a cache line
 
 /// Memory for a plane, from the start of a cache line.
 struct PlaneMemory {
@@ -58,12 +72,10 @@ class Image {
         if (width == width_ && height == height_) {
             return;
         }
-        const ptrdiff_t stride = (ptrdiff_t{width} + kRowPadding - 1) / kRowPadding * kRowPadding;
-        const size_t count = size_t(stride) * size_t(height) + 2 * kRowPadding;
         *this = Image();  // first, so that there are never two planes
-        const PlaneMemory memory = allocateZeros(count * sizeof(T));
+        const PlaneMemory memory = allocateZeros(planeElements(width, height) * sizeof(T));
         memory_ = Memory(static_cast<T*>(memory.data), {memory.mapped_bytes});
-        stride_ = stride;
+        stride_ = rowStride(width);
         width_ = width;
         height_ = height;
     }

@@ -48,7 +48,7 @@ uint16_t luminanceOf(const Rgb16& c) {
 }
 
 void addTo(uint16_t& plane, float linear) {
-    plane = uint16_t(std::min(uint32_t{plane} + toFx12(linear), 65535u));
+    plane = uint16_t(std::min<uint32_t>(plane + toFx12(linear), 65535));
 }
 
 /// Which pixel of a block is kept: another one in each frame.

@@ -10,12 +10,32 @@ namespace still {
 
 namespace {
 
-constexpr int kVertexGrain = 2048;
+constexpr int kVertexGrain = int(internal::kVertexChunkVertices);
 
 struct VertexChunk {
     uint32_t instance;
     uint32_t begin, end;
 };
+
+// rasterizerBytes() does not see these types.
+static_assert(sizeof(internal::Surface) <= internal::kSurfaceBytes);
+static_assert(sizeof(internal::InstanceSetup) <= internal::kInstanceBytes);
+static_assert(sizeof(internal::VertexJob) <= internal::kVertexJobBytes);
+static_assert(sizeof(internal::ScreenVertex) == internal::kVertexBytes);
+static_assert(sizeof(VertexChunk) == internal::kVertexChunkBytes);
+static_assert(sizeof(internal::ChunkInput) <= internal::kChunkInputBytes);
+static_assert(sizeof(internal::Chunk) <= internal::kChunkBytes);
+static_assert(sizeof(internal::TileRect) == internal::kChunkRectBytes);
+static_assert(sizeof(internal::TileTriangle) == internal::kRecordBytes);
+static_assert(sizeof(internal::SetupTriangle) == internal::kWideBytes);
+static_assert(sizeof(internal::ClipBarycentrics) == internal::kClipBytes);
+static_assert(sizeof(internal::BinScratch::Entry) == internal::kEntryBytes);
+static_assert(sizeof(internal::PixelBox) == internal::kWideBoxBytes);
+static_assert(sizeof(internal::BinScratch) <= internal::kBinScratchBytes);
+static_assert(sizeof(internal::TileScratch) <= internal::kTileScratchBytes);
+static_assert(sizeof(internal::TileRun) <= internal::kTileRunBytes);
+static_assert(sizeof(internal::ShadeTriangle) == internal::kShadeBytes);
+static_assert(internal::kMaxBatch == internal::kSpareRecords);
 
 }  // namespace
 
@@ -48,12 +68,11 @@ struct Rasterizer::State {
             const Instance& instance = list.instances[i];
             uint16_t surface = instance.first_surface;
             for (const MeshPart& part : list.meshes[instance.mesh].parts) {
-                for (uint32_t done = 0; done < part.triangle_count;
-                     done += internal::kChunkTriangles) {
-                    inputs.push_back(
-                        {&setup.surfaces[surface], &setup.vertex_jobs[i],
-                         part.first_triangle + done,
-                         std::min(internal::kChunkTriangles, part.triangle_count - done), surface});
+                for (uint32_t done = 0; done < part.triangle_count; done += kChunkTriangles) {
+                    inputs.push_back({&setup.surfaces[surface], &setup.vertex_jobs[i],
+                                      part.first_triangle + done,
+                                      std::min(kChunkTriangles, part.triangle_count - done),
+                                      surface});
                 }
                 ++surface;
             }
@@ -64,6 +83,8 @@ struct Rasterizer::State {
         }
         bins.rects.resize(bins.count);
     }
+
+    void reserve(const RasterLimits& limits);
 
     uint64_t now() const { return settings.ticks != nullptr ? settings.ticks() : 0; }
 
@@ -107,6 +128,49 @@ Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
 Rasterizer::~Rasterizer() = default;
 Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
 Rasterizer& Rasterizer::operator=(Rasterizer&&) noexcept = default;
+
+// What rasterizerBytes() counts, in its order.
+void Rasterizer::State::reserve(const RasterLimits& l) {
+    const size_t tiles = internal::tileCount(l.width, l.height);
+    setup.surfaces.reserve(l.surfaces + 1);
+    setup.instances.reserve(l.instances);
+    setup.vertex_jobs.reserve(l.instances);
+    setup.first_vertex.reserve(l.instances);
+    setup.facts.reserve(tiles);
+    vertices.reserveExactly(l.vertices);
+    vertex_chunks.reserve(l.instances + l.vertices / kVertexGrain);
+    inputs.reserve(l.chunks);
+    bins.chunks.resize(l.chunks);
+    bins.rects.reserve(l.chunks);
+    for (internal::Chunk& chunk : bins.chunks) {
+        chunk.offsets.reserve(tiles + 1);
+        chunk.records.reserveExactly(l.chunk_records);
+        chunk.wide.reserve(l.chunk_wide);
+        chunk.clips.reserve(l.chunk_wide);
+    }
+    bin_scratch.reserve(size_t(l.threads));
+    scratch.reserve(size_t(l.threads));
+    prepare(bin_scratch, l.threads);
+    prepare(scratch, l.threads);
+    for (const auto& each : bin_scratch) {
+        each->entries.reserve(l.chunk_records);
+        each->special.reserve(l.chunk_records);
+        each->wide_boxes.reserve(l.chunk_wide);
+        each->wide_ends.reserve(l.chunk_wide);
+    }
+    for (const auto& each : scratch) {
+        each->runs.reserve(l.chunks + 1);
+        each->triangles.reserveExactly(l.tile_triangles + internal::kMaxBatch);
+        each->shade.reserveExactly(l.tile_triangles + 1);
+        each->shade_ready.reserveExactly(l.tile_triangles);
+        each->seen.reserveExactly(l.tile_triangles + 1);
+    }
+}
+
+void Rasterizer::reserve(const RasterLimits& limits) {
+    static_assert(sizeof(State) <= internal::kRasterizerBytes);
+    state_->reserve(limits);
+}
 
 std::span<const TileFacts> Rasterizer::setUp(const DrawList& list, const FrameView& view,
                                              const RasterSettings& settings) {

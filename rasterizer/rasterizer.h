@@ -9,6 +9,7 @@
 
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
+#include "rasterizer/limits.h"
 #include "rasterizer/simd.h"
 #include "rasterizer/workers.h"
 
@@ -91,6 +92,10 @@ class Rasterizer {
     ~Rasterizer();
     Rasterizer(Rasterizer&&) noexcept;
     Rasterizer& operator=(Rasterizer&&) noexcept;
+
+    /// Makes all memory at once that frames within the limits need; they allocate nothing then.
+    /// Call it first, or not at all: memory grows by itself.
+    void reserve(const RasterLimits& limits);
 
     /// The facts of the view's tiles, before anything is drawn. Preconditions as below.
     /// transformAndBin(workers) goes on from here.

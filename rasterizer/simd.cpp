@@ -47,9 +47,13 @@ std::vector<SimdTarget> availableSimdTargets() {
 }
 
 SimdTarget bestSimdTarget() {
+#if STILL_SIMD
     // Asking the processor takes half a millisecond in a virtual machine.
     static const SimdTarget best = availableSimdTargets().back();
     return best;
+#else
+    return SimdTarget::scalar;
+#endif
 }
 
 }  // namespace still

@@ -1,13 +1,16 @@
 #include "rasterizer/workers.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
+#include <numeric>
+#include <vector>
+
+#if !STILL_BOARD
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
-#include <numeric>
 #include <thread>
-#include <vector>
+#endif
 
 namespace still {
 
@@ -42,6 +45,96 @@ uint64_t nextRandom(uint64_t& state) {
     return z ^ (z >> 31);
 }
 
+#if STILL_BOARD
+
+/// One thread is all there is, and all that is compiled.
+class Pool {
+  public:
+    int start(int) { return 1; }
+    int takeTurn() { return 0; }
+    void run(const Job&) {}
+};
+
+#else
+
+class Pool {
+  public:
+    ~Pool() {
+        {
+            std::lock_guard lock(mutex_);
+            stop_ = true;
+        }
+        start_.notify_all();
+        for (std::thread& thread : others_) {
+            thread.join();
+        }
+    }
+
+    /// `threads` counts the calling one. Returns how many there are.
+    int start(int threads) {
+        for (int worker = 1; worker < threads; ++worker) {
+            others_.emplace_back([this, worker] { work(worker); });
+        }
+        return threads;
+    }
+
+    /// Held by the thread whose parallelFor runs.
+    std::unique_lock<std::mutex> takeTurn() { return std::unique_lock(turn_); }
+
+    void run(const Job& job) {
+        {
+            std::lock_guard lock(mutex_);
+            job_ = job;
+            next_grain_ = 0;
+            busy_ = int(others_.size());
+            ++generation_;
+        }
+        start_.notify_all();
+        takeGrains(0);
+        std::unique_lock lock(mutex_);
+        done_.wait(lock, [&] { return busy_ == 0; });
+    }
+
+  private:
+    void takeGrains(int worker) {
+        const int grains = job_.grains();
+        for (int g = next_grain_.fetch_add(1); g < grains; g = next_grain_.fetch_add(1)) {
+            job_.runGrain(g, worker);
+        }
+    }
+
+    void work(int worker) {
+        uint64_t seen = 0;
+        for (;;) {
+            {
+                std::unique_lock lock(mutex_);
+                start_.wait(lock, [&] { return stop_ || generation_ != seen; });
+                if (stop_) {
+                    return;
+                }
+                seen = generation_;
+            }
+            takeGrains(worker);
+            std::lock_guard lock(mutex_);
+            if (--busy_ == 0) {
+                done_.notify_one();
+            }
+        }
+    }
+
+    std::mutex turn_;
+    std::mutex mutex_;
+    std::condition_variable start_, done_;
+    uint64_t generation_ = 0;
+    int busy_ = 0;
+    bool stop_ = false;
+    Job job_;
+    std::atomic<int> next_grain_{0};
+    std::vector<std::thread> others_;
+};
+
+#endif
+
 }  // namespace
 
 struct Workers::State {
@@ -49,65 +142,16 @@ struct Workers::State {
     Schedule schedule = Schedule::pooled;
     uint64_t random = 0;
     WorkObserver* observer = nullptr;
+    Pool pool;
 
-    std::mutex turn;  ///< held by the thread whose parallelFor runs
-    std::mutex mutex;
-    std::condition_variable start, done;
-    uint64_t generation = 0;
-    int busy = 0;
-    bool stop = false;
-    Job job;
-    std::atomic<int> next_grain{0};
-    std::vector<std::thread> pool;
-
-    void takeGrains(int worker) {
-        const int grains = job.grains();
-        for (int g = next_grain.fetch_add(1); g < grains; g = next_grain.fetch_add(1)) {
-            job.runGrain(g, worker);
-        }
-    }
-
-    void poolThread(int worker) {
-        uint64_t seen = 0;
-        for (;;) {
-            {
-                std::unique_lock lock(mutex);
-                start.wait(lock, [&] { return stop || generation != seen; });
-                if (stop) {
-                    return;
-                }
-                seen = generation;
-            }
-            takeGrains(worker);
-            std::lock_guard lock(mutex);
-            if (--busy == 0) {
-                done.notify_one();
-            }
-        }
-    }
-
-    void runPooled(const Job& new_job) {
-        {
-            std::lock_guard lock(mutex);
-            job = new_job;
-            next_grain = 0;
-            busy = threads - 1;
-            ++generation;
-        }
-        start.notify_all();
-        takeGrains(0);
-        std::unique_lock lock(mutex);
-        done.wait(lock, [&] { return busy == 0; });
-    }
-
-    void runShuffled(const Job& new_job) {
-        std::vector<int> order(size_t(new_job.grains()));
+    void runShuffled(const Job& job) {
+        std::vector<int> order(size_t(job.grains()));
         std::iota(order.begin(), order.end(), 0);
         for (size_t i = order.size(); i > 1; --i) {
             std::swap(order[i - 1], order[nextRandom(random) % i]);
         }
         for (int g : order) {
-            new_job.runGrain(g, 0);
+            job.runGrain(g, 0);
         }
     }
 };
@@ -115,24 +159,12 @@ struct Workers::State {
 Workers::Workers(int threads, Schedule schedule, uint64_t seed)
     : state_(std::make_unique<State>()) {
     assert(threads >= 1);
-    state_->threads = schedule == Schedule::pooled ? threads : 1;
+    state_->threads = schedule == Schedule::pooled ? state_->pool.start(threads) : 1;
     state_->schedule = schedule;
     state_->random = seed;
-    for (int worker = 1; worker < state_->threads; ++worker) {
-        state_->pool.emplace_back([s = state_.get(), worker] { s->poolThread(worker); });
-    }
 }
 
-Workers::~Workers() {
-    {
-        std::lock_guard lock(state_->mutex);
-        state_->stop = true;
-    }
-    state_->start.notify_all();
-    for (std::thread& thread : state_->pool) {
-        thread.join();
-    }
-}
+Workers::~Workers() = default;
 
 int Workers::threads() const {
     return state_->threads;
@@ -148,7 +180,7 @@ void Workers::run(int count, int grain, Call call, void* body) {
     if (job.observer != nullptr) {
         job.observer->sectionBegins(job.grains());
     }
-    const std::lock_guard turn(state_->turn);
+    [[maybe_unused]] const auto turn = state_->pool.takeTurn();
     if (state_->schedule == Schedule::shuffled) {
         state_->runShuffled(job);
     } else if (state_->threads == 1 || job.grains() <= 1) {
@@ -156,7 +188,7 @@ void Workers::run(int count, int grain, Call call, void* body) {
             job.runGrain(g, 0);
         }
     } else {
-        state_->runPooled(job);
+        state_->pool.run(job);
     }
 }
 

@@ -29,7 +29,8 @@ class WorkObserver {
 /// Its place must not change: whoever uses it keeps a reference.
 class Workers {
   public:
-    /// threads ≥ 1 counts the calling thread; serial and shuffled use one thread only.
+    /// threads ≥ 1 counts the calling thread; serial and shuffled use one thread only, and so does
+    /// everything in builds for boards.
     explicit Workers(int threads, Schedule schedule = Schedule::pooled, uint64_t seed = 0);
     ~Workers();
     Workers(const Workers&) = delete;

@@ -85,7 +85,7 @@ int32_t catmullRom(const TaaPolicy& p, const uint32_t* colour, ptrdiff_t stride,
     if (!corners) {
         value += roundShift(roundShift(value, kTapShift) * cornerGain(wx, wy), 16 - kTapShift);
     }
-    return p.dering ? std::clamp(value, low, high) : std::clamp(value, 0, kWorkingMax_w24);
+    return p.dering ? std::clamp(value, low, high) : std::clamp<int32_t>(value, 0, kWorkingMax_w24);
 }
 
 /// Sum of weighted taps, to be divided by the weights' sum.

@@ -8,18 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "postfx/limits.h"
 #include "postfx/policy.h"
 #include "rasterizer/gbuffer.h"
 
 namespace still::lab {
-
-/// Columns and rows around the picture in the colour planes of history that repeat its border, so
-/// that filters need no test.
-constexpr int kMargin = 2;
-/// Columns that history planes have left and right of the picture: whole vectors are written past
-/// the right border, and must not reach the next row.
-constexpr int kLeftColumns = 16;
-constexpr int kRightColumns = 80;
 
 /// Planes of one frame's history; pointers are to pixel (0, 0), all share ResolveJob's
 /// history_stride. Only those that the policy reads are written; the last four describe the pixel
@@ -64,8 +57,8 @@ struct ResolveJob {
     Current now;
     HistoryIn before;
     HistoryOut next;
-    uint16_t* shown[3] = {};
-    uint8_t* confidence = nullptr;
+    uint16_t* shown[3] = {};        ///< null in builds for boards: see Laboratory
+    uint8_t* confidence = nullptr;  ///< null there, too
     TaaPolicy policy;
     FrameConstants constants;
     bool has_history = false;
@@ -75,20 +68,6 @@ struct ResolveJob {
 struct TileRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
-
-// Planes that a policy needs beyond colour.
-constexpr bool needsMemory(const TaaPolicy& p) {
-    return p.blend == Blend::mean || p.blend == Blend::confidence;
-}
-constexpr bool needsDepth(const TaaPolicy& p) {
-    return p.depth_reject_q15 > 0;
-}
-constexpr bool needsNormal(const TaaPolicy& p) {
-    return p.normal_reject_q15 > 0;
-}
-constexpr bool needsMotion(const TaaPolicy& p) {
-    return p.velocity_reject_fx8 > 0;
-}
 
 /// Most tests that can fail: depth, normal, surface, motion, luminance.
 constexpr int kTests = 5;

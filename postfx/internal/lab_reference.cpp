@@ -37,7 +37,7 @@ Share shareOf(const ResolveJob& job, const Past& past, int trust_q8, int speed_f
             break;
         }
         case Blend::confidence:
-            share.memory = std::min(past.memory + kConfidenceStep, 255) * trust_q8 >> 8;
+            share.memory = std::min<int32_t>(past.memory + kConfidenceStep, 255) * trust_q8 >> 8;
             share.alpha_q15 = confidenceAlpha(p.alpha_q15, share.memory);
             share.confidence = share.memory;
             break;
@@ -96,12 +96,16 @@ void storePixel(const ResolveJob& job, int x, int y, const Rgb& colour_w24, cons
     const Rgb shown = linearOf(job.policy, rounded(colour_w24));
     for (int c = 0; c < 3; ++c) {
         job.next.colour_w24[c][at] = uint32_t(colour_w24.v[c]);
-        job.shown[c][shown_at] = uint16_t(shown.v[c]);
+        if (job.shown[c] != nullptr) {
+            job.shown[c][shown_at] = uint16_t(shown.v[c]);
+        }
     }
     if (needsMemory(job.policy)) {
         job.next.memory[at] = uint8_t(share.memory);
     }
-    job.confidence[shown_at] = uint8_t(share.confidence);
+    if (job.confidence != nullptr) {
+        job.confidence[shown_at] = uint8_t(share.confidence);
+    }
 }
 
 void resolvePixel(const ResolveJob& job, int x, int y) {

@@ -77,7 +77,7 @@ constexpr Rgb toneOut(const Rgb& c) {
         {std::min(c.v[0], kToneMax), std::min(c.v[1], kToneMax), std::min(c.v[2], kToneMax)}};
     const uint32_t scale = interpolated<5>(kToneOut.of, largest(t));
     const auto linear = [&](int32_t v) {
-        return std::min(int32_t((uint32_t(v) * scale + 16384) >> 15), 65535);
+        return std::min<int32_t>(int32_t((uint32_t(v) * scale + 16384) >> 15), 65535);
     };
     return {{linear(t.v[0]), linear(t.v[1]), linear(t.v[2])}};
 }
@@ -120,8 +120,9 @@ constexpr Rgb toSpace(const TaaPolicy& p, const Rgb& c) {
 
 constexpr Rgb fromSpace(const TaaPolicy& p, const Rgb& c) {
     const Rgb rgb = p.space == ColourSpace::ycocg ? fromYcocg(c) : c;
-    return {{std::clamp(rgb.v[0], 0, kWorkingMax), std::clamp(rgb.v[1], 0, kWorkingMax),
-             std::clamp(rgb.v[2], 0, kWorkingMax)}};
+    return {{std::clamp<int32_t>(rgb.v[0], 0, kWorkingMax),
+             std::clamp<int32_t>(rgb.v[1], 0, kWorkingMax),
+             std::clamp<int32_t>(rgb.v[2], 0, kWorkingMax)}};
 }
 
 // ---- Windows
@@ -144,7 +145,7 @@ constexpr uint32_t sigmaFactor(int k_fx8) {
 /// k · σ, at most 65535.
 constexpr int32_t halfWidth(uint32_t squared_deviation, uint32_t sigma_q12) {
     const uint32_t width = (rootOf(squared_deviation) * sigma_q12 + 16384) >> 15;
-    return int32_t(std::min(width, 65535u));
+    return int32_t(std::min<uint32_t>(width, 65535));
 }
 
 // ---- History filters
@@ -189,7 +190,7 @@ struct SmallVector {
 constexpr SmallVector decodeNormal(uint16_t n) {
     int32_t x = int8_t(n & 0xFF), y = int8_t(n >> 8);
     const int32_t z = 127 - (x < 0 ? -x : x) - (y < 0 ? -y : y);
-    const int32_t fold = std::max(-z, 0);
+    const int32_t fold = std::max<int32_t>(-z, 0);
     x += x < 0 ? fold : -fold;
     y += y < 0 ? fold : -fold;
     return {x, y, z};
@@ -211,14 +212,15 @@ constexpr bool differentNormals(uint16_t a, uint16_t b, uint32_t square_q15) {
 constexpr bool differentDepths(int32_t a, int32_t b, int32_t limit_q15) {
     const int32_t far = std::min(a, b), near = std::max(a, b);
     const int32_t exponents = (near >> 11) - (far >> 11);
-    const int32_t near_mantissa = (2048 + (near & 2047)) << std::min(exponents, 1);
+    const int32_t near_mantissa = (2048 + (near & 2047)) << std::min<int32_t>(exponents, 1);
     const int32_t difference = near_mantissa - (2048 + (far & 2047));
     return exponents > 1 || (difference << 15) > near_mantissa * limit_q15;
 }
 
 /// Farther apart than the limit (≤ 32767).
 constexpr bool differentMotions(int32_t dx, int32_t dy, int32_t limit_fx8) {
-    const int32_t x = std::min(dx < 0 ? -dx : dx, 32767), y = std::min(dy < 0 ? -dy : dy, 32767);
+    const int32_t x = std::min<int32_t>(dx < 0 ? -dx : dx, 32767);
+    const int32_t y = std::min<int32_t>(dy < 0 ? -dy : dy, 32767);
     return x * x + y * y > limit_fx8 * limit_fx8;
 }
 
@@ -251,7 +253,7 @@ constexpr int32_t velocityAlpha(int32_t alpha_q15, int32_t per_pixel_q15, int32_
 
 /// Share of history's maturity in 0 … 255: count / (count_cap − 1).
 constexpr int32_t meanConfidence(int32_t count, uint32_t count_share_q16) {
-    return int32_t(std::min((uint32_t(count) * count_share_q16) >> 16, 255u));
+    return int32_t(std::min<uint32_t>((uint32_t(count) * count_share_q16) >> 16, 255));
 }
 
 /// Luminance under which differences do not count: 0.2.

@@ -157,8 +157,8 @@ BlendStory blendOf(const ResolveJob& job, const PixelSteps& steps) {
 }
 
 Rgb heldInRange(const StoryColour& c) {
-    return {{std::clamp(c[0], 0, kWorkingMax), std::clamp(c[1], 0, kWorkingMax),
-             std::clamp(c[2], 0, kWorkingMax)}};
+    return {{std::clamp<int32_t>(c[0], 0, kWorkingMax), std::clamp<int32_t>(c[1], 0, kWorkingMax),
+             std::clamp<int32_t>(c[2], 0, kWorkingMax)}};
 }
 
 StoryColour boxColour(const ResolveJob& job, const PixelSteps& steps, StoryPlane plane) {

@@ -43,7 +43,7 @@ uint32_t sigmaAt(const ResolveJob& job, int speed_fx8) {
     if (job.policy.sigma_still_fx8 == 0) {
         return k.sigma_q12;
     }
-    const auto slow = uint32_t(std::min(speed_fx8, k.speed_limit_fx8));
+    const auto slow = uint32_t(std::min<int32_t>(speed_fx8, k.speed_limit_fx8));
     const uint32_t rest_q8 = 256 - ((slow * k.inverse_speed) >> 16);
     const auto wider = int32_t(k.sigma_still_q12) - int32_t(k.sigma_q12);
     return k.sigma_q12 + uint32_t((wider * int32_t(rest_q8 * rest_q8 >> 8)) >> 8);
@@ -126,7 +126,7 @@ Rgb filteredSample_w24(const ResolveJob& job, const Window& window) noexcept {
         for (int k = 0; k < 9; ++k) {
             sum += job.constants.sample_weight_q12[k] * window.sample[k].v[c];
         }
-        result.v[c] = std::clamp(roundShift(sum, 12 - kFractionBits), 0, kWorkingMax_w24);
+        result.v[c] = std::clamp<int32_t>(roundShift(sum, 12 - kFractionBits), 0, kWorkingMax_w24);
     }
     return result;
 }

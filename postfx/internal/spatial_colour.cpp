@@ -146,7 +146,7 @@ void brightnessRow(const ColourPlanes& colour, int y, uint8_t* brightness) {
                    *blue = colour.blue.row(y);
     for (int x = 0; x < colour.red.width; ++x) {
         const int luma = (54 * red[x] + 183 * green[x] + 19 * blue[x]) >> 8;
-        brightness[x] = kRoots[size_t(std::min(luma, kColourOne))];
+        brightness[x] = kRoots[size_t(std::min<int>(luma, kColourOne))];
     }
 }
 

@@ -9,7 +9,8 @@ namespace {
 constexpr uint32_t kLongAgo = 255;
 
 /// Sets the bits of all moved surfaces in the tile. Ors commute: the order of tiles is no matter.
-void collectMoved(const GBuffer& gbuffer, int tile, uint64_t* bits) {
+/// Words of 32 bits, for small CPUs have no larger atomic ones.
+void collectMoved(const GBuffer& gbuffer, int tile, uint32_t* bits) {
     const int x0 = tile % gbuffer.tiles_x * kTileSize, y0 = tile / gbuffer.tiles_x * kTileSize;
     const int x1 = std::min(x0 + kTileSize, gbuffer.width());
     const int y1 = std::min(y0 + kTileSize, gbuffer.height());
@@ -22,8 +23,8 @@ void collectMoved(const GBuffer& gbuffer, int tile, uint64_t* bits) {
             }
             last = row[x];
             const auto surface = size_t(last & kSurfaceMask);
-            std::atomic_ref<uint64_t>(bits[surface / 64])
-                .fetch_or(uint64_t{1} << (surface % 64), std::memory_order_relaxed);
+            std::atomic_ref<uint32_t>(bits[surface / 32])
+                .fetch_or(uint32_t{1} << (surface % 32), std::memory_order_relaxed);
         }
     }
 }
@@ -59,7 +60,7 @@ void StartedSurfaces::countAges(bool first, int ring) {
         return;
     }
     if (ages_.empty()) {
-        ages_.assign(started_.size() * 64, kLongAgo);
+        ages_.assign(started_.size() * 32, kLongAgo);
     }
     for (size_t surface = 0; surface < ages_.size(); ++surface) {
         const bool starts = camera_started_ || contains(int(surface));

@@ -30,11 +30,11 @@ class StartedSurfaces {
 
     bool any() const { return any_; }
     bool contains(int surface) const {
-        return ((started_[size_t(surface) / 64] >> (size_t(surface) % 64)) & 1) != 0;
+        return ((started_[size_t(surface) / 32] >> (size_t(surface) % 32)) & 1) != 0;
     }
 
   private:
-    using Bits = std::array<uint64_t, (size_t(kSurfaceMask) + 1) / 64>;
+    using Bits = std::array<uint32_t, (size_t(kSurfaceMask) + 1) / 32>;
     Bits now_{}, before_{}, started_{};
     bool any_ = false;
     bool camera_ = false, camera_started_ = false;

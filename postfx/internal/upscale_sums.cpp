@@ -113,7 +113,7 @@ struct Tile {
                 }
             }
             sums.count[to] = uint16_t(count);
-            shown_count[to] = shows ? uint8_t(std::min(count, 255u)) : shown_count[to];
+            shown_count[to] = shows ? uint8_t(std::min<uint32_t>(count, 255)) : shown_count[to];
             result.changed = true;
         }
     }

@@ -26,7 +26,7 @@ void show(const Job& job, ptrdiff_t at) {
     for (int c = 0; c < 3; ++c) {
         job.shown[c][at] = uint16_t((job.sums.colour[c][at] + count / 2) / count);
     }
-    job.shown_count[at] = uint8_t(std::min(count, 255u));
+    job.shown_count[at] = uint8_t(std::min<uint32_t>(count, 255));
 }
 
 void addSample(const Job& job, ptrdiff_t at, ptrdiff_t from, bool first) {

@@ -20,7 +20,8 @@ constexpr int kTileFx8 = kTileSize * kSubpixelOne;
 bool outsideAnEdge(const SetupTriangle& t, int tile_x0, int tile_y0) {
     for (int k = 0; k < 3; ++k) {
         const Edge e = makeEdge(t, k, tile_x0, tile_y0);
-        if (e.c + int64_t{std::max(e.a, 0) + std::max(e.b, 0)} * (kTileSize - 1) < 0) {
+        if (e.c + int64_t{std::max<int32_t>(e.a, 0) + std::max<int32_t>(e.b, 0)} * (kTileSize - 1) <
+            0) {
             return true;
         }
     }

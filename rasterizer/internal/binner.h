@@ -27,10 +27,13 @@ class Buffer {
     /// At least `count` elements; what stood there is lost when it has to grow.
     T* reserve(size_t count) {
         if (count > capacity_) {
-            capacity_ = count + count / 4;
-            memory_ = std::make_unique_for_overwrite<T[]>(capacity_);
+            reserveExactly(count + count / 4);
         }
         return memory_.get();
+    }
+    void reserveExactly(size_t count) {
+        memory_ = std::make_unique_for_overwrite<T[]>(count);
+        capacity_ = count;
     }
     T* data() const { return memory_.get(); }
 

@@ -44,7 +44,7 @@ Surface makeSurface(const DrawList& list, const Instance& instance, uint32_t ins
     const auto& ks = material.specular;
     if (ks[0] > 0.0f || ks[1] > 0.0f || ks[2] > 0.0f) {
         s.shininess =
-            std::clamp(roundToInt(std::clamp(material.shininess, 1.0f, 1024.0f)), 1, 1024);
+            std::clamp<int>(roundToInt(std::clamp(material.shininess, 1.0f, 1024.0f)), 1, 1024);
     }
     if (s.shininess > 0 || !list.lighting.points.empty()) {
         s.features |= kShadePosition;

@@ -8,6 +8,7 @@
 #include "rasterizer/draw_list.h"
 #include "rasterizer/gbuffer.h"
 #include "rasterizer/internal/matrix.h"
+#include "rasterizer/limits.h"
 #include "rasterizer/simd.h"
 
 namespace still::internal {
@@ -64,10 +65,6 @@ struct PositionBox {
 
 constexpr int kTileShift = 6;
 static_assert(1 << kTileShift == kTileSize);
-
-/// Chunks are this many consecutive triangles of one surface: a constant, so that the cut does not
-/// depend on the threads.
-constexpr uint32_t kChunkTriangles = 1024;
 
 /// Triangles up to this size in x and in y, a tile's, stay in 16-bit coordinates relative to any
 /// tile that they touch, touch at most two in a row, and products of their extents fit 32 bits.

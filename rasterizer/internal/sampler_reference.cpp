@@ -46,7 +46,7 @@ int mipLevel_fx8(const TextureCoordinates& c, const std::vector<TextureLevel>& l
     const float exponent = float(int32_t(bits >> 23) - 127);
     const float t = std::bit_cast<float>((bits & 0x007FFFFFu) | 0x3F800000u) - 1.0f;
     const float log2 = exponent + t * (kLog2C1 + t * (kLog2C2 + t * kLog2C3));
-    return std::clamp(roundToInt(log2 * 128.0f) + bias_fx8, 0, (int(levels.size()) - 1) * 256);
+    return std::clamp<int>(roundToInt(log2 * 128.0f) + bias_fx8, 0, (int(levels.size()) - 1) * 256);
 }
 
 /// The four texels around a point of one level, and the fractions between them.

@@ -48,9 +48,9 @@ void makeShadeTriangle(TileContext& tile, const Chunk& chunk, uint32_t i) {
         }
     }
     const int anchor_x =
-        std::max(tile.x0, (std::min({t.x_fx8[0], t.x_fx8[1], t.x_fx8[2]}) + 255) >> 8);
+        std::max<int>(tile.x0, (std::min({t.x_fx8[0], t.x_fx8[1], t.x_fx8[2]}) + 255) >> 8);
     const int anchor_y =
-        std::max(tile.y0, (std::min({t.y_fx8[0], t.y_fx8[1], t.y_fx8[2]}) + 255) >> 8);
+        std::max<int>(tile.y0, (std::min({t.y_fx8[0], t.y_fx8[1], t.y_fx8[2]}) + 255) >> 8);
     double value[3], dx[3], dy[3];  // of p_k = λ_k / w_k, in the setup triangle's vertex order
     double area2 = 0;
     for (int k = 0; k < 3; ++k) {

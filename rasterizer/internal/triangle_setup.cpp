@@ -11,10 +11,10 @@ PixelBox pixelBox(const SetupTriangle& t, int width, int height) {
     const auto [min_x, max_x] = std::minmax({t.x_fx8[0], t.x_fx8[1], t.x_fx8[2]});
     const auto [min_y, max_y] = std::minmax({t.y_fx8[0], t.y_fx8[1], t.y_fx8[2]});
     constexpr int kRoundUp = kSubpixelOne - 1;
-    return {std::max(0, (min_x + kRoundUp) >> kSubpixelBits),
-            std::max(0, (min_y + kRoundUp) >> kSubpixelBits),
-            std::min(width - 1, max_x >> kSubpixelBits),
-            std::min(height - 1, max_y >> kSubpixelBits)};
+    return {std::max<int>(0, (min_x + kRoundUp) >> kSubpixelBits),
+            std::max<int>(0, (min_y + kRoundUp) >> kSubpixelBits),
+            std::min<int>(width - 1, max_x >> kSubpixelBits),
+            std::min<int>(height - 1, max_y >> kSubpixelBits)};
 }
 
 namespace {

@@ -63,10 +63,10 @@ class BatchBuilder {
         const auto [min_x, max_x] = std::minmax({v[0].x_fx8, v[1].x_fx8, v[2].x_fx8});
         const auto [min_y, max_y] = std::minmax({v[0].y_fx8, v[1].y_fx8, v[2].y_fx8});
         constexpr int kRoundUp = kSubpixelOne - 1;
-        const int x0 = std::max(0, (min_x + kRoundUp) >> kSubpixelBits);
-        const int y0 = std::max(0, (min_y + kRoundUp) >> kSubpixelBits);
-        const int x1 = std::min(job_.width - 1, max_x >> kSubpixelBits);
-        const int y1 = std::min(job_.height - 1, max_y >> kSubpixelBits);
+        const int x0 = std::max<int>(0, (min_x + kRoundUp) >> kSubpixelBits);
+        const int y0 = std::max<int>(0, (min_y + kRoundUp) >> kSubpixelBits);
+        const int x1 = std::min<int>(job_.width - 1, max_x >> kSubpixelBits);
+        const int y1 = std::min<int>(job_.height - 1, max_y >> kSubpixelBits);
         if (x1 < x0 || y1 < y0) {
             return;
         }
@@ -99,10 +99,10 @@ class BatchBuilder {
         record.id = id;
         const bool several = tx1 != tx || ty1 != ty;
         addRecord(record, uint32_t(tx | ty << 8) | (several ? TriangleBatch::kSeveralTiles : 0));
-        batch_.tile_x0 = std::min(batch_.tile_x0, tx);
-        batch_.tile_y0 = std::min(batch_.tile_y0, ty);
-        batch_.tile_x1 = std::max(batch_.tile_x1, tx1);
-        batch_.tile_y1 = std::max(batch_.tile_y1, ty1);
+        batch_.tile_x0 = std::min<int>(batch_.tile_x0, tx);
+        batch_.tile_y0 = std::min<int>(batch_.tile_y0, ty);
+        batch_.tile_x1 = std::max<int>(batch_.tile_x1, tx1);
+        batch_.tile_y1 = std::max<int>(batch_.tile_y1, ty1);
     }
 
     void addWide(uint32_t triangle) {
