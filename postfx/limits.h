@@ -7,6 +7,7 @@
 #include "postfx/policy.h"
 #include "rasterizer/arena.h"
 #include "rasterizer/gbuffer.h"
+#include "rasterizer/limits.h"
 
 namespace still {
 
@@ -46,6 +47,31 @@ constexpr bool needsMotion(const TaaPolicy& p) {
 constexpr size_t kStateBytes = 38 * sizeof(void*) + 512;
 
 }  // namespace lab
+
+namespace taa {
+
+// What is allocated and not seen from here; taa.cpp asserts it.
+constexpr size_t kStateBytes = 120 * sizeof(void*) + 12800;
+constexpr size_t kSlotBytes = 34 * sizeof(void*) + 88;
+constexpr size_t kTileJitterBytes = 4, kTileMemoryBytes = 12;
+constexpr size_t kSlotPlanes = 10;
+
+}  // namespace taa
+
+/// Bytes of an Arena that a Taa takes at most: itself, and what reserve() makes for `ring` slots.
+/// 384 KB of it are tables of all surface numbers.
+constexpr size_t taaBytes(int width, int height, int ring) {
+    using namespace taa;
+    const size_t tiles = internal::tileCount(width, height);
+    const size_t byte_plane = planeArenaBytes<uint8_t>(width, height);
+    const size_t plane = planeArenaBytes<uint16_t>(width, height);
+    const size_t slot = kSlotPlanes * plane + arenaBytes(tiles * kTileJitterBytes);
+    const size_t sums = 3 * plane + 3 * byte_plane + byte_plane;
+    const size_t shown = 3 * plane + byte_plane, hint = plane, marks = byte_plane;
+    return arenaBytes(kStateBytes) + arenaBytes(size_t(ring) * kSlotBytes) + size_t(ring) * slot +
+           sums + shown + hint + marks + arenaBytes(tiles * kTileMemoryBytes) +
+           2 * arenaBytes(tiles) + 3 * arenaBytes((size_t(kSurfaceMask) + 1) * sizeof(uint32_t));
+}
 
 /// Bytes of an Arena that a Laboratory takes at most: itself, and what reserve() makes.
 constexpr size_t laboratoryBytes(int width, int height, const TaaPolicy& policy) {

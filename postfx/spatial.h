@@ -44,6 +44,9 @@ struct SpatialSettings {
 /// Filters whole frames; keeps its buffer from frame to frame.
 class SpatialFilter {
   public:
+    /// Makes the buffer; else the first run() does.
+    void reserve(int width, int height) { marks_.resize(width, height); }
+
     /// Writes every pixel of `out`, which has the input's size and does not overlap its planes. The
     /// planes have padded rows and may be read a row's padding beyond their ends (see Image).
     void run(const SpatialInput& input, const SpatialSettings& settings, const ColourTargets& out,

@@ -15,6 +15,7 @@
 #include "postfx/internal/memory.h"
 #include "postfx/internal/rules.h"
 #include "postfx/internal/started.h"
+#include "postfx/limits.h"
 #include "postfx/spatial.h"
 
 namespace still {
@@ -209,6 +210,20 @@ Taa::Taa() : state_(std::make_unique<State>()) {}
 Taa::~Taa() = default;
 Taa::Taa(Taa&&) noexcept = default;
 Taa& Taa::operator=(Taa&&) noexcept = default;
+
+void Taa::reserve(int width, int height, const TaaSettings& settings) {
+    static_assert(sizeof(State) <= taa::kStateBytes);
+    static_assert(sizeof(SlotPlanes) <= taa::kSlotBytes);
+    static_assert(sizeof(TileJitter) == taa::kTileJitterBytes);
+    static_assert(sizeof(TileMemory) == taa::kTileMemoryBytes);
+    State& s = *state_;
+    s.begin(width, height, true, settings);
+    s.wanted.reserve(s.tileCount());
+    s.changed.reserve(s.tileCount());
+    s.surfaces.reserve();
+    s.started.reserve();
+    s.spatial.reserve(width, height);
+}
 
 bool Taa::rest(const TaaSettings& settings) {
     State& s = *state_;

@@ -59,6 +59,10 @@ class Taa {
     Taa(Taa&&) noexcept;
     Taa& operator=(Taa&&) noexcept;
 
+    /// Makes all memory that frames of this size with these settings need, as much as taaBytes()
+    /// says; else it is made when it is needed first. Forgets the past.
+    void reserve(int width, int height, const TaaSettings& settings);
+
     /// Which tiles (1; else 0) of a G-buffer of this size and these facts the frame's resolve()
     /// reads. In the others the planes may keep samples of the frame in which they were last read.
     /// Valid until the next call.

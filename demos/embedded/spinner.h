@@ -2,6 +2,8 @@
 // A chequered ring that turns over a chequered floor, 160 × 120, with TAA: everything between the
 // arena and the pixels, the same on the board and on the desktop.
 
+#include <algorithm>
+
 #include "postfx/laboratory.h"
 #include "postfx/limits.h"
 #include "rasterizer/limits.h"

@@ -37,6 +37,11 @@ Current currentOf(const GBuffer& gbuffer) {
         .depth_before = gbuffer.depth_before.view().data};
 }
 
+void SurfaceChanges::reserve() {
+    ages_.reserve(kSurfaces);
+    turning_.reserve(kSurfaces);
+}
+
 void SurfaceChanges::note(const TaaFrame& frame, bool now, int ring) {
     if (now || since_ < ring) {
         countAges(frame, now, ring);

@@ -24,6 +24,8 @@ Current currentOf(const GBuffer& gbuffer);
 /// How long ago each surface's shading changed, and which surfaces turn.
 class SurfaceChanges {
   public:
+    /// Memory for all that may be noted.
+    void reserve();
     /// Nothing is known of what was before.
     void forget(int ring) { since_ = ring; }
     /// Once per frame that is kept. `now`: shading changed, as changesShading() says.

@@ -15,6 +15,8 @@ namespace still::taa {
 /// Surfaces that are seen moving now and were not in the frame before.
 class StartedSurfaces {
   public:
+    /// Memory for all that may be noted.
+    void reserve() { ages_.reserve(size_t(kSurfaceMask) + 1); }
     /// Once per frame, in order. After `first` nothing has started. When the camera starts, so does
     /// everything.
     void note(const GBuffer& gbuffer, bool first, Workers& workers);

@@ -12,12 +12,13 @@ constexpr size_t kMemoryBytes = size_t{64} << 20;
 alignas(64) std::byte memory[kMemoryBytes];
 std::optional<Arena> arena;
 size_t unmet_requests = 0;
+bool paused = false;
 std::mutex mutex;  // tests of threads
 
 void* allocate(size_t bytes, size_t alignment) {
     {
         const std::lock_guard lock(mutex);
-        if (arena.has_value()) {
+        if (arena.has_value() && !paused) {
             if (void* const from_arena = arena->allocate(bytes, alignment)) {
                 return from_arena;
             }
@@ -43,6 +44,7 @@ void release(void* pointer) {
 
 ArenaInUse::ArenaInUse(size_t bytes) {
     unmet_requests = 0;
+    paused = false;
     arena.emplace(std::span(memory).first(bytes));
 }
 
@@ -56,6 +58,14 @@ size_t ArenaInUse::used() const {
 
 void ArenaInUse::seal() {
     arena->seal();
+}
+
+void ArenaInUse::pause() {
+    paused = true;
+}
+
+void ArenaInUse::goOn() {
+    paused = false;
 }
 
 size_t ArenaInUse::unmet() const {

@@ -18,6 +18,9 @@ class ArenaInUse {
     size_t used() const;
     /// Nothing is handed out any more.
     void seal();
+    /// Between the two, memory comes from the heap as if there were no arena.
+    void pause();
+    void goOn();
     /// Requests that the arena did not meet, sealed or full.
     size_t unmet() const;
 };

@@ -7,6 +7,7 @@
 
 #include "postfx/laboratory.h"
 #include "postfx/limits.h"
+#include "postfx/taa.h"
 #include "rasterizer/arena.h"
 #include "rasterizer/limits.h"
 #include "tests/board/counted_memory.h"
@@ -156,6 +157,66 @@ TEST_CASE("limits: a laboratory takes what laboratoryBytes() says, whatever its 
             checkBound(used, laboratoryBytes(size.width, size.height, preset.policy));
         }
     }
+}
+
+TEST_CASE("limits: a Taa takes what taaBytes() says", "[board]") {
+    for (const Size& size : kSizes) {
+        for (const int ring : {1, 2, 8, kMaxRing}) {
+            size_t used = 0;
+            {
+                ArenaInUse arena(60 * kMegabyte);
+                Taa taa;
+                taa.reserve(size.width, size.height, {.ring = ring});
+                used = arena.used();
+            }
+            CAPTURE(size.width, size.height, ring);
+            checkBound(used, taaBytes(size.width, size.height, ring));
+        }
+    }
+}
+
+TEST_CASE("limits: a Taa asks for no memory while things start, turn, change and rest", "[board]") {
+    const int threads = GENERATE(1, 3);
+    TestScene scene = busyScene(2);
+    const FrameView view = busyView(2);
+    const TaaSettings settings{.sample_cap = 8, .ring = 4};
+    const std::vector<uint64_t> some_surfaces((size_t(kSurfaceMask) + 1) / 64, 5);
+    Rasterizer rasterizer;
+    GBuffer gbuffer;
+    Workers workers(threads);
+    size_t unmet = 1;
+    {
+        ArenaInUse arena(taaBytes(view.width, view.height, settings.ring));
+        Taa taa;
+        taa.reserve(view.width, view.height, settings);
+        for (int frame = 0; frame < 30; ++frame) {
+            arena.pause();
+            const bool rests = frame >= 12 && frame < 24;
+            FrameView now = view;
+            if (rests) {
+                now.view_projection_before = now.view_projection;
+            }
+            for (Instance& instance : scene.instances) {
+                instance.moved = !rests && frame % 3 != 0;
+            }
+            const DrawList list = scene.list();
+            TaaFrame taa_frame{.reset = frame == 0 || frame == 27,
+                               .shading_changed = frame == 5 || frame == 20};
+            if (frame % 4 == 1 && !rests) {
+                taa_frame.changed_surfaces = some_surfaces;
+                taa_frame.turning_surfaces = some_surfaces;
+            }
+            rasterizer.transformAndBin(list, now, {.planes = kAllPlanes}, workers);
+            rasterizer.rasterize(gbuffer, workers);
+            arena.goOn();
+            arena.seal();
+            taa.plan(view.width, view.height, gbuffer.tiles, taa_frame, settings);
+            taa.resolve(gbuffer, taa_frame, settings, workers);
+        }
+        unmet = arena.unmet();
+        arena.pause();
+    }
+    CHECK(unmet == 0);
 }
 
 TEST_CASE("limits: frames within them ask for no memory, on any SIMD target and thread",
