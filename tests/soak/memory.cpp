@@ -8,6 +8,20 @@
 #include <cstring>
 #include <new>
 
+#if defined(__has_feature)
+#define STILL_HAS_FEATURE(feature) __has_feature(feature)
+#else
+#define STILL_HAS_FEATURE(feature) 0
+#endif
+/// Sanitizers watch over memory by themselves, and keep what was freed.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || \
+    STILL_HAS_FEATURE(address_sanitizer) || STILL_HAS_FEATURE(thread_sanitizer)
+#define STILL_COUNTS_MEMORY 0
+#else
+#define STILL_COUNTS_MEMORY 1
+#endif
+
+#if STILL_COUNTS_MEMORY
 namespace still::soak {
 namespace {
 
@@ -44,9 +58,6 @@ int64_t liveBytes() {
 }
 
 int64_t residentBytes() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return 0;
-#else
     long pages = 0, resident = 0;
     if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
         if (std::fscanf(file, "%ld %ld", &pages, &resident) != 2) {
@@ -55,7 +66,6 @@ int64_t residentBytes() {
         std::fclose(file);
     }
     return int64_t{resident} * sysconf(_SC_PAGESIZE);
-#endif
 }
 
 }  // namespace still::soak
@@ -78,3 +88,18 @@ void operator delete(void* memory, std::align_val_t alignment) noexcept {
 void operator delete(void* memory, size_t, std::align_val_t alignment) noexcept {
     still::soak::release(memory, size_t(alignment));
 }
+
+#else
+
+namespace still::soak {
+
+int64_t liveBytes() {
+    return 0;
+}
+int64_t residentBytes() {
+    return 0;
+}
+
+}  // namespace still::soak
+
+#endif

@@ -5,11 +5,13 @@
 
 namespace still::soak {
 
+// Both are 0 in builds with a sanitizer.
+
 /// Bytes handed out by operator new and not given back. Large planes are mapped, not counted; the
 /// scripts' pictures are too small for that.
 int64_t liveBytes();
 
-/// Resident set; 0 where the system does not tell, or where a sanitizer keeps what was freed.
+/// Resident set; 0 where the system does not tell.
 int64_t residentBytes();
 
 }  // namespace still::soak
