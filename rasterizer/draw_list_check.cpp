@@ -17,8 +17,8 @@ const char* flawOfLevels(const AnyTexture& texture) {
     for (size_t k = 0; k < texture.levels.size(); ++k) {
         const TextureLevel& level = texture.levels[k];
         const TextureLevel& above = texture.levels[k == 0 ? 0 : k - 1];
-        const bool halved = level.width == std::max(above.width / 2, 1u) &&
-                            level.height == std::max(above.height / 2, 1u);
+        const bool halved = level.width == std::max<uint32_t>(above.width / 2, 1) &&
+                            level.height == std::max<uint32_t>(above.height / 2, 1);
         if (level.width < 1 || level.height < 1 || level.width > kMaxTextureSize ||
             level.height > kMaxTextureSize) {
             return "texture: a level of no size or too large";
