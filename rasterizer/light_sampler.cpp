@@ -34,7 +34,7 @@ struct Rgb16 {
 };
 
 uint16_t toFx12(float linear) {
-    return uint16_t(roundToInt(std::min(std::max(linear, 0.0f), kColourMax) * kColourScale));
+    return uint16_t(roundToInt(smaller(larger(linear, 0.0f), kColourMax) * kColourScale));
 }
 
 Rgb16 toFx12(const Float3& c) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "engine/anti_aliasing.h"
 #include "engine/golden.h"
@@ -11,6 +12,7 @@ namespace still::golden {
 namespace {
 
 constexpr int kMaxFrame = 1000000;
+constexpr size_t kMaxFrames = 4000000;  ///< of all cases together
 constexpr int kMaxSamples = 4096;
 constexpr size_t kMaxCases = 100000;
 constexpr size_t kMaxName = 100;
@@ -159,12 +161,20 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
     root.expectKeys({"cases"}, {"notes", "comment"});
     Manifest manifest{folder, {}, {}};
     std::vector<std::string> names;
+    size_t frames = 0;
     for (const JsonCursor& cursor : root.require("cases").items(1, kMaxCases)) {
         manifest.cases.push_back(caseFrom(cursor, report.file));
         names.push_back(lower(manifest.cases.back().name));
+        frames += manifest.cases.back().frames.size();
+        if (frames > kMaxFrames) {
+            cursor.refuse("expected at most " + std::to_string(kMaxFrames) +
+                          " frames in all cases");
+            break;
+        }
     }
+    std::set<std::string> known;
     for (size_t i = 0; i < names.size() && !report.error; ++i) {
-        if (std::count(names.begin(), names.begin() + ptrdiff_t(i), names[i]) > 0) {
+        if (!known.insert(names[i]).second) {
             root.refuse("expected cases with different names, found two called " +
                         manifest.cases[i].name);
         }

@@ -68,7 +68,9 @@ namespace {
 /// missing bytes for zeros and reports success.
 class ByteSource {
   public:
-    explicit ByteSource(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+    /// Behind the end there is `padding` without end, or if that is 0 nothing.
+    explicit ByteSource(std::span<const uint8_t> bytes, uint8_t padding = 0)
+        : bytes_(bytes), padding_(padding) {}
     bool overrun() const { return overrun_; }
 
     static int read(void* user, char* data, int size) {
@@ -81,6 +83,10 @@ class ByteSource {
         source.overrun_ |= taken == 0 || (size != kBufferBytes && taken < size_t(size));
         std::memcpy(data, source.bytes_.data() + source.position_, taken);
         source.position_ += taken;
+        if (taken == 0 && source.padding_ != 0) {
+            std::memset(data, source.padding_, size_t(size));
+            return size;
+        }
         return int(taken);
     }
     static void skip(void* user, int count) {
@@ -96,6 +102,7 @@ class ByteSource {
 
   private:
     std::span<const uint8_t> bytes_;
+    uint8_t padding_;
     size_t position_ = 0;
     bool overrun_ = false;
 };
@@ -150,7 +157,8 @@ uint8_t encodeSrgb(float linear) {
 }
 
 Result<Image<Rgba8>> decodeHdr(std::span<const uint8_t> bytes, const std::string& name) {
-    ByteSource source(bytes);
+    // Given zeros for missing bytes, the decoder would wait for ever for a run that is not empty.
+    ByteSource source(bytes, 1);
     const stbi_io_callbacks io = ByteSource::callbacks();
     int width = 0, height = 0, channels = 0;
     const std::unique_ptr<float, FreePixels> pixels(
@@ -230,6 +238,13 @@ Result<Image<Rgba8>> decodeImage(std::span<const uint8_t> bytes, const std::stri
                                 " pixels, expected 1 to " + std::to_string(kMaxImageSize) +
                                 " a side and at most " + std::to_string(kMaxImagePixels >> 20) +
                                 " Mpixel");
+    }
+    // No format packs more into a byte (runs of 65535 pixels in 4 bytes of a PIC), so there is not
+    // enough in the file, and the decoder need not take memory to find that out.
+    constexpr int64_t kPixelsPerByte = 16384;
+    if (wide * high / kPixelsPerByte > length) {
+        return refuse(name, std::to_string(wide) + " × " + std::to_string(high) + " pixels in " +
+                                std::to_string(length) + " bytes, expected a whole file");
     }
     setAllowance(bytes.size(), wide, high);
     if (stbi_is_hdr_from_memory(bytes.data(), length)) {

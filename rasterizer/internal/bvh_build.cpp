@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "rasterizer/draw_list_check.h"
 #include "rasterizer/internal/bvh_node.h"
 #include "rasterizer/internal/matrix.h"
 
@@ -258,6 +259,13 @@ Box worldBox(const Box& box, const Affine& m) {
     return world;
 }
 
+/// Where rays can be followed; false for NaN.
+bool isSomewhere(const Box& box, const Affine& to_object) {
+    const auto small = [](float value) { return std::fabs(value) <= kMaxPosition; };
+    return std::all_of(box.low, box.low + 3, small) && std::all_of(box.high, box.high + 3, small) &&
+           std::all_of(to_object.begin(), to_object.end(), small);
+}
+
 }  // namespace
 
 void buildSceneTree(const DrawList& list, const std::vector<MeshTree>& meshes, SceneTree& out) {
@@ -274,12 +282,14 @@ void buildSceneTree(const DrawList& list, const std::vector<MeshTree>& meshes, S
         tree.identity = instance.identity;
         tree.first_surface = instance.first_surface;
         const Matrix to_object = inverse(fromAffine(instance.transform));
-        for (int k = 0; k < 12; ++k) {
-            tree.to_object[k] = float(to_object.m[k / 4][k % 4]);
+        Affine back;
+        for (size_t k = 0; k < back.size(); ++k) {
+            back[k] = tree.to_object[k] = float(to_object.m[k / 4][k % 4]);
         }
+        const Box box = worldBox(tree.tree->bounds, instance.transform);
         // Nothing hits what is flattened to nothing.
-        if (!tree.tree->nodes.empty() && to_object.m[3][3] != 0.0) {
-            boxes.push_back(worldBox(tree.tree->bounds, instance.transform));
+        if (!tree.tree->nodes.empty() && to_object.m[3][3] != 0.0 && isSomewhere(box, back)) {
+            boxes.push_back(box);
             numbers.push_back(i);
             all.add(boxes.back());
         }

@@ -55,6 +55,10 @@ Surface makeSurface(const DrawList& list, const Instance& instance, uint32_t ins
     return s;
 }
 
+bool isFinite(const Affine& a) {
+    return std::all_of(a.begin(), a.end(), [](float v) { return v - v == 0.0f; });
+}
+
 /// Inverse transpose of the 3×3 up to a positive factor: the cofactors, signed by the determinant.
 /// Returns whether the determinant is negative.
 bool normalMatrix(const Affine& a, float out[9]) {
@@ -157,7 +161,8 @@ void setUpInstance(const DrawList& list, const FrameView& view, const RasterSett
     s.moved = instance.moved;
     s.own_motion = instance.moved && !settings.camera_motion_only;
     const Matrix now = clip_now * fromAffine(instance.transform);
-    s.clip = toFloat(now);
+    // What is not a number has no place: all of its vertices lie behind the camera.
+    s.clip = isFinite(instance.transform) ? toFloat(now) : MatrixF{};
     s.mirrored = normalMatrix(instance.transform, s.normal);
     if (instance.moved) {
         const Matrix before = clip_before * fromAffine(instance.transform_before);

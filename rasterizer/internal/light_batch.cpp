@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rasterizer/draw_list_check.h"
 #include "rasterizer/internal/light_scene.h"
 #include "rasterizer/internal/sun_map.h"
 
@@ -75,7 +76,16 @@ struct Shadows {
     }
 };
 
+bool areWithin(const Float3& v, float limit) {
+    return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;
+}
+
+/// From what is nowhere, or to there, a ray that ends before it begins and hits nothing.
 Ray rayFrom(const LitPoint& point, const Float3& direction, float end, uint32_t random) {
+    if (!areWithin(point.origin, kMaxPosition) || !areWithin(direction, 2.0f) ||
+        !(end <= kFarAway)) {
+        return {{0, 0, 0}, -1.0f, {0, 0, 1}, random};
+    }
     return {{point.origin.x, point.origin.y, point.origin.z},
             end,
             {direction.x, direction.y, direction.z},

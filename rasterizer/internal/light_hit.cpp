@@ -53,7 +53,8 @@ const uint32_t* texelOf(const Texture& texture, float u, float v) {
     const auto along = [&](float c, uint32_t size) {
         const float wrapped =
             texture.wrap == Wrap::repeat ? c - std::floor(c) : std::min(std::max(c, 0.0f), 1.0f);
-        return uint32_t(std::min(int(wrapped * float(int32_t(size))), int(size) - 1));
+        const float at = wrapped <= 1.0f ? wrapped : 0.0f;  // not a number
+        return uint32_t(std::min(int(at * float(int32_t(size))), int(size) - 1));
     };
     return &texture.texels[level.offset + along(1.0f - v, level.height) * level.stride +
                            along(u, level.width)];

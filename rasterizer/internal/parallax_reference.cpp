@@ -25,7 +25,7 @@ RaySlope raySlope(const FrameTables& frame, const PixelBarycentrics& p, const Su
     const Float3 t = worldTangent(p, s, instance);
     const Float3 b = worldBitangent(p, s, instance, n, t);
     const Float3 to_eye = towardsEye(*frame.view, worldPosition(p, s, instance));
-    const float cosine = std::max(dot(n, to_eye) * p.triangle->flip, kParallaxMinCosine);
+    const float cosine = larger(dot(n, to_eye) * p.triangle->flip, kParallaxMinCosine);
     const float scale = s.material->height_scale / cosine;
     return {dot(t, to_eye) * -scale, dot(b, to_eye) * -scale};
 }
@@ -47,7 +47,7 @@ TextureCoordinates displacedCoordinates(const FrameTables& frame, const PixelBar
         // Of the ray above the ground; never positive in the last step.
         const float gap = (1.0f - sampleAlpha(*s.height, at, s.mip_bias_fx8)) - depth;
         if (gap <= 0.0f) {
-            const float back = gap / std::min(gap - gap_before, -kTiny);  // in steps, 0 … 1
+            const float back = gap / smaller(gap - gap_before, -kTiny);  // in steps, 0 … 1
             depth = i == 0 ? 0.0f : depth - back * kParallaxStep;
             break;
         }

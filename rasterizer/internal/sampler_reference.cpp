@@ -40,8 +40,7 @@ int mipLevel_fx8(const TextureCoordinates& c, const std::vector<TextureLevel>& l
                  int bias_fx8) {
     const float w = float(levels[0].width), h = float(levels[0].height);
     const float ax = c.du_dx * w, bx = c.dv_dx * h, ay = c.du_dy * w, by = c.dv_dy * h;
-    const float rho2 =
-        std::min(std::max(std::max(ax * ax + bx * bx, ay * ay + by * by), kTiny), 1e30f);
+    const float rho2 = smaller(larger(larger(ax * ax + bx * bx, ay * ay + by * by), kTiny), 1e30f);
     const uint32_t bits = std::bit_cast<uint32_t>(rho2);
     const float exponent = float(int32_t(bits >> 23) - 127);
     const float t = std::bit_cast<float>((bits & 0x007FFFFFu) | 0x3F800000u) - 1.0f;
@@ -56,7 +55,8 @@ struct Footprint {
 };
 
 float wrapped(float c, Wrap wrap) {
-    return wrap == Wrap::repeat ? c - std::floor(c) : std::min(std::max(c, 0.0f), 1.0f);
+    const float w = wrap == Wrap::repeat ? c - std::floor(c) : smaller(larger(c, 0.0f), 1.0f);
+    return w <= 1.0f ? w : 0.0f;  // not a number
 }
 
 /// First texel and the next one along one axis.

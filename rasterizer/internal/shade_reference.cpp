@@ -55,7 +55,7 @@ Float3 toFloat3(const std::array<float, 3>& a) {
 
 void addLight(Lit& lit, const Float3& to_light, const Float3& colour, float attenuation,
               const Float3& n, const Float3& to_eye, int shininess) {
-    const float cosine = std::max(dot(n, to_light), 0.0f) * attenuation;
+    const float cosine = larger(dot(n, to_light), 0.0f) * attenuation;
     lit.diffuse.x = lit.diffuse.x + colour.x * cosine;
     lit.diffuse.y = lit.diffuse.y + colour.y * cosine;
     lit.diffuse.z = lit.diffuse.z + colour.z * cosine;
@@ -64,7 +64,7 @@ void addLight(Lit& lit, const Float3& to_light, const Float3& colour, float atte
             normalized({to_light.x + to_eye.x, to_light.y + to_eye.y, to_light.z + to_eye.z});
         // Only where the light reaches the surface.
         const float highlight =
-            cosine > 0.0f ? power(std::max(dot(n, half), 0.0f), shininess) * attenuation : 0.0f;
+            cosine > 0.0f ? power(larger(dot(n, half), 0.0f), shininess) * attenuation : 0.0f;
         lit.specular.x = lit.specular.x + colour.x * highlight;
         lit.specular.y = lit.specular.y + colour.y * highlight;
         lit.specular.z = lit.specular.z + colour.z * highlight;
@@ -85,7 +85,7 @@ Lit lightSurface(const TileContext& tile, const PixelBarycentrics& p, const Surf
     for (const PointLight& light : lighting.points) {
         const Float3 to{light.position[0] - position.x, light.position[1] - position.y,
                         light.position[2] - position.z};
-        const float d2 = std::max(dot(to, to), 1e-12f);
+        const float d2 = larger(dot(to, to), 1e-12f);
         const Float3 direction = scale(to, 1.0f / std::sqrt(d2));
         addLight(lit, direction, toFloat3(light.colour), 1.0f / d2, n, to_eye, s.shininess);
     }
@@ -95,11 +95,11 @@ Lit lightSurface(const TileContext& tile, const PixelBarycentrics& p, const Surf
 // ---- output ----------------------------------------------------------------------------------
 
 uint16_t toFx12(float linear) {
-    return uint16_t(roundToInt(std::min(std::max(linear, 0.0f), kColourMax) * kColourScale));
+    return uint16_t(roundToInt(smaller(larger(linear, 0.0f), kColourMax) * kColourScale));
 }
 
 uint32_t packOctahedral(const Float3& n) {
-    const float sum = std::max((std::fabs(n.x) + std::fabs(n.y)) + std::fabs(n.z), kTiny);
+    const float sum = larger((std::fabs(n.x) + std::fabs(n.y)) + std::fabs(n.z), kTiny);
     const float inv = 1.0f / sum;
     const float px = n.x * inv, py = n.y * inv;
     float u = px, v = py;
@@ -107,7 +107,9 @@ uint32_t packOctahedral(const Float3& n) {
         u = (1.0f - std::fabs(py)) * (px < 0.0f ? -1.0f : 1.0f);
         v = (1.0f - std::fabs(px)) * (py < 0.0f ? -1.0f : 1.0f);
     }
-    const auto snorm = [](float f) { return uint32_t(roundToInt(f * kSnormScale)) & 0xFFFFu; };
+    const auto snorm = [](float f) {
+        return f == f ? uint32_t(roundToInt(f * kSnormScale)) & 0xFFFFu : 0u;
+    };
     return snorm(u) | (snorm(v) << 16);
 }
 

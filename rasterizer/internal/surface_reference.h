@@ -14,6 +14,14 @@ struct Float3 {
     float x, y, z;
 };
 
+/// The larger and the smaller one as the SIMD kernels choose it: of what is not a number, `b`.
+inline float larger(float a, float b) {
+    return a > b ? a : b;
+}
+inline float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+
 inline float dot(const Float3& a, const Float3& b) {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
@@ -23,7 +31,7 @@ inline Float3 scale(const Float3& a, float s) {
 }
 
 inline Float3 normalized(const Float3& a) {
-    return scale(a, 1.0f / std::sqrt(std::max(dot(a, a), kTiny)));
+    return scale(a, 1.0f / std::sqrt(larger(dot(a, a), kTiny)));
 }
 
 inline Float3 cross(const Float3& a, const Float3& b) {
@@ -41,9 +49,9 @@ inline PixelBarycentrics barycentricsAt(const ShadeTriangle& t, int x, int y) {
     PixelBarycentrics p;
     const float rx = float(x) - t.anchor_x, ry = float(y) - t.anchor_y;
     for (int k = 0; k < 3; ++k) {
-        p.b[k] = std::max((t.p[k] + t.p_dy[k] * ry) + t.p_dx[k] * rx, 0.0f);
+        p.b[k] = larger((t.p[k] + t.p_dy[k] * ry) + t.p_dx[k] * rx, 0.0f);
     }
-    p.w = 1.0f / std::max((p.b[0] + p.b[1]) + p.b[2], kTiny);
+    p.w = 1.0f / larger((p.b[0] + p.b[1]) + p.b[2], kTiny);
     for (float& b : p.b) {
         b = b * p.w;
     }

@@ -115,10 +115,10 @@ Material material(Bytes& in, const OwnedList& list) {
     return m;
 }
 
-Mesh mesh(Bytes& in, const OwnedList& list) {
+Mesh mesh(Bytes& in, size_t materials) {
     Mesh m;
-    const int vertices = in.below(20);
-    const bool tangents = in.below(4) != 0;
+    const int vertices = (3 + in.below(18)) % 20;
+    const bool tangents = in.below(8) != 7;
     for (int i = 0; i < vertices; ++i) {
         const std::array<float, 3> p = reals(in);
         m.x.push_back(p[0]);
@@ -126,20 +126,20 @@ Mesh mesh(Bytes& in, const OwnedList& list) {
         m.z.push_back(p[2]);
         const uint8_t n = in.byte();
         const float u = in.real(), v = in.real();
-        m.attributes.push_back({float(n & 3) - 1.0f, float(n >> 2 & 3) - 1.0f,
-                                n == 255 ? in.real() : float(n >> 4 & 3) - 1.0f, u, v});
+        const auto axis = [n](int third) { return float(n / third % 3) - 1.0f; };
+        m.attributes.push_back({axis(1), axis(3), n == 255 ? in.real() : axis(9), u, v});
         if (tangents) {
-            m.tangents.push_back({float(n >> 6) - 1.0f, 0.0f, 1.0f, (n & 1) != 0 ? 1.0f : -1.0f});
+            m.tangents.push_back({axis(27), 0.0f, 1.0f, (n & 1) != 0 ? 1.0f : -1.0f});
         }
     }
-    const int parts = in.below(4);
+    const int parts = (1 + in.below(4)) % 4;
     for (int i = 0; i < parts; ++i) {
         const uint32_t first = m.triangleCount();
-        const uint32_t triangles = uint32_t(in.below(6));
+        const uint32_t triangles = uint32_t(1 + in.below(12)) % 12;
         for (uint32_t k = 0; k < triangles * 3; ++k) {
             m.indices.push_back(choice(in, m.x.size()));
         }
-        m.parts.push_back({first, triangles, choice(in, list.materials.size())});
+        m.parts.push_back({first, triangles, choice(in, materials)});
     }
     return m;
 }
@@ -155,23 +155,23 @@ Affine affine(Bytes& in) {
     return a;
 }
 
-void addInstances(Bytes& in, OwnedList& list) {
-    const int count = in.below(4);
+Instance instance(Bytes& in, size_t meshes) {
+    Instance made;
+    const uint8_t kind = in.byte();
+    made.mesh = kind == 255 ? 63 : kind % uint32_t(meshes);
+    made.transform = (kind & 16) != 0 ? affine(in) : kIdentity;
+    made.transform_before = (kind & 32) != 0 ? affine(in) : made.transform;
+    made.identity = made.transform == kIdentity;
+    made.moved = made.transform != made.transform_before;
+    return made;
+}
+
+void numberSurfaces(OwnedList& list) {
     uint32_t surface = 1;
-    for (int i = 0; i < count; ++i) {
-        Instance instance;
-        instance.mesh =
-            uint32_t(in.below(64)) == 63 ? 63 : uint32_t(in.byte() % list.meshes.size());
-        instance.object = uint16_t(i + 1);
-        instance.first_surface = uint16_t(surface);
-        instance.transform = affine(in);
-        instance.transform_before = in.flag() ? affine(in) : instance.transform;
-        instance.identity = instance.transform == kIdentity;
-        instance.moved = instance.transform != instance.transform_before;
-        surface += instance.mesh < list.meshes.size()
-                       ? uint32_t(list.meshes[instance.mesh].parts.size())
-                       : 0;
-        list.instances.push_back(instance);
+    for (Instance& each : list.instances) {
+        each.first_surface = uint16_t(surface);
+        surface +=
+            each.mesh < list.meshes.size() ? uint32_t(list.meshes[each.mesh].parts.size()) : 0;
     }
 }
 
@@ -243,7 +243,7 @@ void repair(OwnedList& list) {
         repair(mesh, list.materials.size());
     }
     const auto holdTexture = [](int32_t& texture, size_t count) {
-        texture = texture >= int32_t(count) ? kNoTexture : texture;
+        texture = texture < 0 || texture >= int32_t(count) ? kNoTexture : texture;
     };
     for (Material& m : list.materials) {
         for (std::array<float, 3>* colour : {&m.diffuse, &m.specular, &m.emission}) {
@@ -266,9 +266,19 @@ void repair(OwnedList& list) {
     hold(list.background, 0.0f, kMaxColour);
 }
 
+/// What decides about the most comes first, for inputs may be short.
 OwnedList drawList(Bytes& in) {
     OwnedList list;
     const uint8_t counts = in.byte();
+    list.lighting = lighting(in);
+    list.background = colour(in);
+    const size_t meshes = 1 + (counts >> 5 & 1);
+    for (int i = (counts >> 6) + 1; i > 0; --i) {
+        list.instances.push_back(instance(in, meshes));
+    }
+    for (size_t i = 0; i < meshes; ++i) {
+        list.meshes.push_back(mesh(in, 1 + (counts >> 3 & 3)));
+    }
     for (int i = 0; i < (counts & 3); ++i) {
         list.textures.push_back(texture<Texture>(in));
     }
@@ -278,12 +288,6 @@ OwnedList drawList(Bytes& in) {
     for (int i = 0; i < 1 + (counts >> 3 & 3); ++i) {
         list.materials.push_back(material(in, list));
     }
-    for (int i = 0; i < 1 + (counts >> 5 & 1); ++i) {
-        list.meshes.push_back(mesh(in, list));
-    }
-    addInstances(in, list);
-    list.lighting = lighting(in);
-    list.background = colour(in);
     return list;
 }
 
@@ -397,6 +401,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if ((how & 0x80) == 0) {
         repair(owned);
     }
+    numberSurfaces(owned);
     settings.planes = {
         .normal = true, .motion = true, .albedo = (how & 4) != 0 || owned.lighting.sampled.any()};
     if (flawOf(owned.list()) != nullptr) {

@@ -147,6 +147,12 @@ TEST_CASE("golden: a broken manifest is refused with file, place and what was ex
     }
     CHECK(manifestError(R"({"cases": [{"name": "a", "scene": "x", "resolution": [0, 8]}]})") ==
           ": /cases/0/resolution/0: expected a whole number from 1 to 8192, found 0");
+    std::string many = R"({"cases": [)";
+    for (int i = 0; i < 5; ++i) {
+        many += std::string(i == 0 ? "" : ",") + R"({"name": "n)" + std::to_string(i) +
+                R"(", "scene": "x", "resolution": [8, 8], "frames": 1000000})";
+    }
+    CHECK(manifestError(many + "]}") == ": /cases/4: expected at most 4000000 frames in all cases");
 }
 
 TEST_CASE("golden: every case is in exactly one shard, in any number of shards", "[unit][golden]") {

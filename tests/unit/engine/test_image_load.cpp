@@ -144,6 +144,9 @@ TEST_CASE("image: sizes beyond the limits are refused before decoding", "[unit][
         REQUIRE_FALSE(image);
         CHECK(isOneLineAbout(image.error().message, "big.ppm"));
     }
+    const Result<Image<Rgba8>> hollow = loadImage(folder.write("a.ppm", "P6\n16384 16384\n255\n"));
+    REQUIRE_FALSE(hollow);
+    CHECK(hollow.error().message.find("16384 × 16384 pixels in 19 bytes") != std::string::npos);
     const Result<Image<Rgba8>> wide = loadImage(folder.write("wide.ppm", ppm(16384, 1, 7)));
     REQUIRE(wide);
     CHECK(wide->width() == 16384);
@@ -191,6 +194,16 @@ TEST_CASE("image: HDR is clamped and encoded to sRGB", "[unit][engine]") {
     CHECK(image->at(1, 0).g == 188);
     CHECK(image->at(2, 0).b == 255);
     CHECK(image->at(3, 0).r == 0);
+}
+
+TEST_CASE("image: an HDR that ends in empty runs is truncated, and decoding it ends",
+          "[unit][engine]") {
+    std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
+    bytes += std::string("\x02\x02\x00\x08\x88\x40", 6) + std::string(40, '\0');
+    const Result<Image<Rgba8>> image =
+        decodeImage({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, "x.hdr");
+    REQUIRE_FALSE(image);
+    CHECK(image.error().message == "x.hdr: not a readable image: truncated");
 }
 
 TEST_CASE("image: no prefix of a file crashes the decoder", "[unit][engine]") {
