@@ -112,7 +112,11 @@ struct Wide {
 };
 /// Back to 16 bits; what does not fit is held at the ends.
 HWY_INLINE VS narrow(VW lower, VW upper) {
+#if HWY_ARCH_ARM_V7  // where Highway 1.0.3 puts them the other way round than elsewhere
+    return hn::ReorderDemote2To(DS(), upper, lower);
+#else
     return hn::ReorderDemote2To(DS(), lower, upper);
+#endif
 }
 template <class Function>
 HWY_INLINE VS narrowed(Function&& function) {
