@@ -19,9 +19,8 @@ quick=(gcc12-O0 clang14-O2 aarch64 s390x wasm-simd)
 
 # Compilers for this machine, with all kernels of Highway for it.
 describe_native() {
-    machine='x86-64' compiler="${name%%-*}" runner=() source=. level="${name#*-}"
-    args=(-DSTILL_TESTS=ON -DSTILL_SUBBUILDS=OFF -DSTILL_VIEWER=OFF)
-    program=tests/determinism/determinism
+    machine='x86-64' compiler="${name%%-*}" runner=() source=tests/matrix level="${name#*-}"
+    args=() program=determinism
     compiler="${compiler/gcc/g++-}" compiler="${compiler/clang/clang++-}"
     packages=("${compiler/clang++/clang}")
     if [ "$compiler" = clang++-19 ]; then
