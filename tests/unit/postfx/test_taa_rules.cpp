@@ -290,3 +290,18 @@ TEST_CASE("taa rules: normals up to about ten degrees apart count as lit alike",
     }
     CHECK(tested > 10000);
 }
+
+TEST_CASE("taa rules: small normals unfold like large ones, 0 counting as positive",
+          "[postfx][unit]") {
+    for (int x = -128; x <= 127; ++x) {
+        for (int y = -128; y <= 127; ++y) {
+            const taa::SmallNormal n =
+                taa::decodeNormal(uint32_t(x & 255) | uint32_t(y & 255) << 8);
+            const int z = 127 - std::abs(x) - std::abs(y);
+            CAPTURE(x, y, n.x, n.y, n.z);
+            REQUIRE(n.z == z);
+            REQUIRE(n.x == (z >= 0 ? x : (127 - std::abs(y)) * (x < 0 ? -1 : 1)));
+            REQUIRE(n.y == (z >= 0 ? y : (127 - std::abs(x)) * (y < 0 ? -1 : 1)));
+        }
+    }
+}
