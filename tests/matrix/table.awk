@@ -26,9 +26,9 @@ $2 == "table" {
     time_ms[target, $2, $1] = $4
 }
 
-# SSE2 is what every x86-64 has, and GCC and Clang use it for the scalar kernels.
+# SSE2 is what every x86-64 has; compilers use it for the scalar kernels unless told of more.
 function shown(target, kernel) {
-    if (kernel == "scalar" && machine[target] ~ /x86/) {
+    if (kernel == "scalar" && machine[target] ~ /x86/ && compiler[target] !~ /-march|-msse4/) {
         return "scalar (SSE2)"
     }
     return kernel
