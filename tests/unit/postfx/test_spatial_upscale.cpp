@@ -166,3 +166,30 @@ TEST_CASE("spatial_upscale: every SIMD target and number of threads gives the sc
         }
     }
 }
+
+TEST_CASE("spatial_upscale: a picture of whole vectors leaves what lies beside it alone",
+          "[postfx][unit]") {
+    std::mt19937 random(9);
+    Picture in(40, 30);
+    in.fill([&](int, int, int) { return int(random() % 65536); });
+    Workers workers(1);
+    for (const EnlargeFilter filter : kFilters) {
+        for (const SimdTarget simd : availableSimdTargets()) {
+            Picture out(128, 48);
+            out.fill([](int, int, int) { return 777; });
+            ColourTargets left = out.targets();
+            left.red.width = left.green.width = left.blue.width = 64;
+            SpatialUpscaler().run(in.planes(), filter, left, simd, workers);
+            int changed = 0;
+            for (const Image<uint16_t>& plane : out.channel) {
+                for (int y = 0; y < 48; ++y) {
+                    for (int x = 64; x < 128; ++x) {
+                        changed += plane.at(x, y) != 777 ? 1 : 0;
+                    }
+                }
+            }
+            INFO(name(simd));
+            CHECK(changed == 0);
+        }
+    }
+}
