@@ -37,6 +37,8 @@ describe_native() {
             case "$compiler" in
                 g++*) flags='-flto=auto' args+=(-DCMAKE_AR=/usr/bin/gcc-ar) ;;
                 *-14) args+=(-DCMAKE_AR=/usr/bin/llvm-ar-14) packages+=(llvm-14) ;;&
+                # Its linker needs no index of the archives, and an older llvm-ar cannot make one.
+                *-19) args+=(-DCMAKE_AR=/usr/bin/ar -DCMAKE_RANLIB=/usr/bin/ranlib) ;;&
                 clang*)
                     args+=(-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld)
                     packages+=("lld-${compiler##*-}")
