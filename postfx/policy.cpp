@@ -65,6 +65,10 @@ constexpr std::optional<int> indexIn(std::string_view list, std::string_view val
 
 /// The number that up to 9 digits spell; 0 for none.
 constexpr std::optional<int64_t> digitsOf(std::string_view text) {
+    constexpr size_t kMostDigits = 9;
+    if (text.size() > kMostDigits) {
+        return {};
+    }
     int64_t number = 0;
     for (const char c : text) {
         if (c < '0' || c > '9') {
@@ -72,7 +76,7 @@ constexpr std::optional<int64_t> digitsOf(std::string_view text) {
         }
         number = number * 10 + (c - '0');
     }
-    return text.size() <= 9 ? std::optional(number) : std::nullopt;
+    return number;
 }
 
 /// A decimal number times `unit`, rounded half up.

@@ -114,14 +114,16 @@ std::vector<uint8_t> withFullPalette(std::span<const uint8_t> bytes) {
 }
 
 bool hasOversizedHuffmanTable(std::span<const uint8_t> bytes) {
-    if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) {
+    // As the decoder sees it: any number of FF, then the start of an image.
+    const size_t start = nextMarker(bytes, 0);
+    if (start >= bytes.size() || bytes[0] != 0xFF || bytes[start] != 0xD8) {
         return false;
     }
     // Application data may hold anything, so up to the first scan segments are skipped by length.
     // Behind it the decoder can be made to look for markers anywhere.
     constexpr uint8_t kDht = 0xC4, kScan = 0xDA, kFirstPlain = 0xD0, kLastPlain = 0xD8;
     bool in_scan = false;
-    size_t at = nextMarker(bytes, 2);
+    size_t at = nextMarker(bytes, start + 1);
     while (at < bytes.size()) {
         const uint8_t marker = bytes[at];
         if (marker == kDht && isOversizedDht(bytes, at + 1)) {

@@ -55,6 +55,8 @@ TEST_CASE("image guard: JPEGs with tables of more than 256 codes are found", "[u
     CHECK_FALSE(oversized(segment(0xE1, huffmanTable(255, 255)) + huffmanTable(1, 1)));
     CHECK(oversized(segment(0xE1, "exif") + segment(0xDA, "scan") + "data" +
                     segment(0xE1, huffmanTable(255, 255))));
+    // More than one FF before the start of the image.
+    CHECK(hasOversizedHuffmanTable(bytesOf("\xFF\xFF\xFF\xD8" + huffmanTable(255, 255))));
     CHECK_FALSE(oversized(""));
     CHECK_FALSE(oversized("\xFF"));
     CHECK_FALSE(oversized("\xFF\xC4"));

@@ -100,6 +100,8 @@ TEST_CASE("policy: wrong keys and values change nothing", "[postfx][unit]") {
         {"alpha", "--1"},
         {"alpha", "1.1.1"},
         {"alpha", "0.0000000001"},
+        {"alpha", "0.2555555555555555555555"},
+        {"ring", "25555555555555555555"},
         {"ring", "0"},
         {"ring", "17"},
         {"ring", "2.5"},
