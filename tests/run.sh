@@ -17,7 +17,7 @@ esac
 # Compilers and emulators for the targets of the matrix that every run builds.
 mapfile -t matrix_packages < <(tests/matrix/target.sh --quick | xargs -n 1 tests/matrix/target.sh --packages)
 board_packages=(gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-system-arm)
-install_packages "${matrix_packages[@]}" "${board_packages[@]}" clang libbenchmark-dev xvfb libgtest-dev parallel \
+install_packages "${matrix_packages[@]}" "${board_packages[@]}" clang libclang-rt-dev llvm libbenchmark-dev xvfb libgtest-dev parallel \
     "${still_peer_packages[@]}"
 cmake --preset release -DSTILL_TESTS=ON >/dev/null
 cmake --build --preset release
