@@ -37,6 +37,14 @@ void* reallocateForDecoder(void* block, size_t bytes) {
     return permitsBlock(bytes) ? std::realloc(block, bytes) : nullptr;
 }
 
+/// memcpy, but copying nothing to nowhere is permitted: the decoder does so when the first IDAT of
+/// a PNG is empty.
+void copyForDecoder(void* to, const void* from, size_t bytes) {
+    if (bytes > 0) {
+        std::memcpy(to, from, bytes);
+    }
+}
+
 }  // namespace
 
 // Scalar code, and memory that is zero where a corrupt file makes the decoder read before it
@@ -49,11 +57,13 @@ void* reallocateForDecoder(void* block, size_t bytes) {
 #define STBI_REALLOC(pointer, size) reallocateForDecoder(pointer, size)
 #define STBI_FREE(pointer) std::free(pointer)
 #define STBI_MAX_DIMENSIONS 16384
+#define memcpy(to, from, bytes) copyForDecoder(to, from, bytes)
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #endif
 #include <stb/stb_image.h>
+#undef memcpy
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif

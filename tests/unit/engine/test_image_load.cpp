@@ -168,6 +168,17 @@ TEST_CASE("image: a file that asks for gigabytes its size has no use for is refu
     CHECK(image.error().message.starts_with(kReason));
 }
 
+TEST_CASE("image: a PNG whose first IDAT is empty loads as without it", "[unit][engine]") {
+    const std::string pixel = deflatedZeros(1);
+    const std::string plain = pngOfOnePixel(uint32_t(pixel.size()), pixel);
+    std::string with_empty = plain;
+    with_empty.insert(plain.find("IDAT") - 4, bigEndian(0) + "IDAT" + "crc.");
+    const auto expected = decoded(plain), found = decoded(with_empty);
+    REQUIRE(expected);
+    REQUIRE(found);
+    CHECK(samePixels(*expected, *found));
+}
+
 TEST_CASE("image: opaque formats get alpha 255", "[unit][engine]") {
     const std::string bytes = ppm(3, 2, char(200));
     const Result<Image<Rgba8>> image =
