@@ -207,9 +207,11 @@ Result<Image<Rgba8>> decodeBytes(std::span<const uint8_t> bytes, const std::stri
     const stbi_io_callbacks io = ByteSource::callbacks();
     int width = 0, height = 0, channels = 0;
     // Channels as they are in the file: asked for four, the decoder reads past the end of 16-bit
-    // PNMs.
+    // PNMs. Of PICs it makes four in any case, and goes on to three though the file is broken.
+    constexpr uint8_t kPicStart[] = {0x53, 0x80, 0xF6, 0x34};
+    const bool pic = bytes.size() >= 4 && std::equal(kPicStart, kPicStart + 4, bytes.begin());
     const std::unique_ptr<stbi_uc, FreePixels> pixels(
-        stbi_load_from_callbacks(&io, &source, &width, &height, &channels, 0));
+        stbi_load_from_callbacks(&io, &source, &width, &height, &channels, pic ? 4 : 0));
     if (!pixels) {
         return refuseAsDecoder(name);
     }
@@ -218,7 +220,7 @@ Result<Image<Rgba8>> decodeBytes(std::span<const uint8_t> bytes, const std::stri
     }
     Image<Rgba8> image(width, height);
     constexpr std::array kExpand{expand<1>, expand<2>, expand<3>, expand<4>};
-    kExpand[size_t(channels - 1)](pixels.get(), image.view());
+    kExpand[size_t(pic ? 3 : channels - 1)](pixels.get(), image.view());
     return image;
 }
 

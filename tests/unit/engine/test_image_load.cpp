@@ -179,6 +179,20 @@ TEST_CASE("image: a PNG whose first IDAT is empty loads as without it", "[unit][
     CHECK(samePixels(*expected, *found));
 }
 
+TEST_CASE("image: a PIC whose runs are broken is refused, a whole one is loaded",
+          "[unit][engine]") {
+    const std::string start = "\x53\x80\xF6\x34" + std::string(84, '\0') + "PICT" +
+                              std::string("\0\2\0\2\x3F\x80\0\0\0\3\0\0", 12) +
+                              std::string("\0\x08\2\xE0", 4);
+    const std::string row("\x81\x01\x02\x03", 4);  // two pixels of one colour
+    const auto whole = decoded(start + row + row);
+    REQUIRE(whole);
+    CHECK((whole->at(1, 1) == Rgba8{1, 2, 3, 255}));
+    const auto broken = decoded(start + "\x02" + row + row);  // runs of three are too long
+    REQUIRE_FALSE(broken);
+    CHECK(isOneLineAbout(broken.error().message, "x.png"));
+}
+
 TEST_CASE("image: opaque formats get alpha 255", "[unit][engine]") {
     const std::string bytes = ppm(3, 2, char(200));
     const Result<Image<Rgba8>> image =
