@@ -33,11 +33,7 @@ struct Rgb16 {
     uint16_t r, g, b;
 };
 
-uint16_t toFx12(float linear) {
-    return uint16_t(roundToInt(smaller(larger(linear, 0.0f), kColourMax) * kColourScale));
-}
-
-Rgb16 toFx12(const Float3& c) {
+Rgb16 rounded(const Float3& c) {
     return {toFx12(c.x), toFx12(c.y), toFx12(c.z)};
 }
 
@@ -224,10 +220,10 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
     const bool on_screen = scene.list->lighting.sampled.ambient == AmbientLight::screen_occlusion;
     for (int i = 0; i < s.batch.count; ++i) {
         const int x = s.x[i], y = s.y[i];
-        const Rgb16 direct = toFx12(s.batch.direct[i]);
+        const Rgb16 direct = rounded(s.batch.direct[i]);
         const Float3 ambient = s.batch.indirect[i];
         const Rgb16 indirect =
-            toFx12(on_screen ? scale(ambient, screen.openAt(gbuffer, x, y)) : ambient);
+            rounded(on_screen ? scale(ambient, screen.openAt(gbuffer, x, y)) : ambient);
         out.direct_red.at(x, y) = direct.r;
         out.direct_green.at(x, y) = direct.g;
         out.direct_blue.at(x, y) = direct.b;
@@ -242,7 +238,7 @@ void LightSampler::State::store(GBuffer& gbuffer, LightImages& out, int x0, int 
         }
         if (keep) {
             // What is seen where nothing else was is not known of another frame.
-            keepSample(s, i, direct, on_screen ? toFx12(ambient) : indirect);
+            keepSample(s, i, direct, on_screen ? rounded(ambient) : indirect);
         }
     }
 }
@@ -340,8 +336,8 @@ void LightSampler::State::traceAgain(int begin, int end, LightChangeImages& out,
         const int x = block[i] % across, y = block[i] / across;
         out.direct_before.at(x, y) = sample.direct;
         out.indirect_before.at(x, y) = sample.indirect;
-        out.direct_now.at(x, y) = luminanceOf(toFx12(batch.direct[i]));
-        out.indirect_now.at(x, y) = luminanceOf(toFx12(batch.indirect[i]));
+        out.direct_now.at(x, y) = luminanceOf(rounded(batch.direct[i]));
+        out.indirect_now.at(x, y) = luminanceOf(rounded(batch.indirect[i]));
     }
 }
 

@@ -261,7 +261,7 @@ Box worldBox(const Box& box, const Affine& m) {
 
 /// Where rays can be followed; false for NaN.
 bool isSomewhere(const Box& box, const Affine& to_object) {
-    const auto small = [](float value) { return std::fabs(value) <= kMaxPosition; };
+    const auto small = [](float value) { return within(value, kMaxPosition); };
     return std::all_of(box.low, box.low + 3, small) && std::all_of(box.high, box.high + 3, small) &&
            std::all_of(to_object.begin(), to_object.end(), small);
 }

@@ -77,7 +77,7 @@ struct Shadows {
 };
 
 bool areWithin(const Float3& v, float limit) {
-    return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;
+    return within(v.x, limit) && within(v.y, limit) && within(v.z, limit);
 }
 
 /// From what is nowhere, or to there, a ray that ends before it begins and hits nothing.

@@ -94,10 +94,6 @@ Lit lightSurface(const TileContext& tile, const PixelBarycentrics& p, const Surf
 
 // ---- output ----------------------------------------------------------------------------------
 
-uint16_t toFx12(float linear) {
-    return uint16_t(roundToInt(smaller(larger(linear, 0.0f), kColourMax) * kColourScale));
-}
-
 uint32_t packOctahedral(const Float3& n) {
     const float sum = larger((std::fabs(n.x) + std::fabs(n.y)) + std::fabs(n.z), kTiny);
     const float inv = 1.0f / sum;

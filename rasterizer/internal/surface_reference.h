@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rasterizer/fixed.h"
 #include "rasterizer/internal/kernels.h"
 #include "rasterizer/internal/shading_constants.h"
 
@@ -20,6 +21,11 @@ inline float larger(float a, float b) {
 }
 inline float smaller(float a, float b) {
     return a < b ? a : b;
+}
+
+/// Linear light as planes hold it; 0 for what is not a number.
+inline uint16_t toFx12(float linear) {
+    return uint16_t(roundToInt(smaller(larger(linear, 0.0f), kColourMax) * kColourScale));
 }
 
 inline float dot(const Float3& a, const Float3& b) {
